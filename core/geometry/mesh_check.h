@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <span>
+#include <string>
+#include <vector>
+
+#include "core/geometry/shape.h"
+
+namespace fogbow {
+
+/// What is wrong with a would-be medium boundary, in the words of a warning.
+struct BoundaryDefect {
+  enum class Kind { Open, InconsistentOrientation, InsideOut, SelfIntersecting, NonManifold };
+  Kind kind;
+  std::size_t shape;  ///< index into the group
+  std::string message;
+};
+
+/// The union of shapes that separate one interior from one exterior medium.
+class BoundaryGroup {
+ public:
+  /// Welds coincident vertices of the group's tessellations and checks closedness, orientation and self-intersection.
+  explicit BoundaryGroup(std::span<const Shape* const> shapes);
+  ~BoundaryGroup();
+  BoundaryGroup(BoundaryGroup&&) noexcept;
+  BoundaryGroup& operator=(BoundaryGroup&&) noexcept;
+
+  const std::vector<BoundaryDefect>& defects() const;
+  bool closed() const;
+  /// Enclosed volume, world units cubed; only for closed groups.
+  double volume() const;
+  /// Whether the point lies strictly inside; only for closed groups. A sphere answers exactly.
+  bool contains(const Vec3& p) const;
+
+ private:
+  struct Impl;
+  std::unique_ptr<Impl> impl_;
+};
+
+}  // namespace fogbow

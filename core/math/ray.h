@@ -1,0 +1,35 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "core/math/vec.h"
+
+namespace fogbow {
+
+/// Points o + t d with t in (t_min, t_max); d is a unit vector.
+struct Ray {
+  Vec3 o, d;
+  double t_min = 0;
+  double t_max = kInfinity;
+
+  Vec3 operator()(double t) const { return o + t * d; }
+};
+
+/// Axis-aligned box; empty when lo > hi.
+struct Bounds {
+  Vec3 lo{kInfinity}, hi{-kInfinity};
+
+  void extend(const Vec3& p) {
+    lo = glm::min(lo, p);
+    hi = glm::max(hi, p);
+  }
+  void extend(const Bounds& b) {
+    lo = glm::min(lo, b.lo);
+    hi = glm::max(hi, b.hi);
+  }
+  bool empty() const { return lo.x > hi.x || lo.y > hi.y || lo.z > hi.z; }
+  Vec3 center() const { return 0.5 * (lo + hi); }
+  Vec3 diagonal() const { return hi - lo; }
+  double radius() const { return empty() ? 0.0 : 0.5 * length(diagonal()); }
+  double volume() const { return empty() ? 0.0 : (hi.x - lo.x) * (hi.y - lo.y) * (hi.z - lo.z); }
+};
+
+}  // namespace fogbow

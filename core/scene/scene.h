@@ -1,0 +1,111 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <optional>
+#include <string>
+#include <vector>
+
+#include "core/geometry/accel.h"
+#include "core/image/film.h"
+#include "core/math/discrete_distribution.h"
+#include "core/scene/bsdf.h"
+#include "core/scene/emitter.h"
+#include "core/scene/medium.h"
+#include "core/scene/sensor.h"
+#include "core/util/error.h"
+
+namespace fogbow {
+
+/// A shape with what it is made of.
+struct Surface {
+  std::shared_ptr<const Shape> shape;
+  std::shared_ptr<const Bsdf> bsdf;
+  std::shared_ptr<Emitter> emitter;  ///< null where it does not emit
+  /// Where true, the media on the two sides are those named (null: vacuum); else the surface leaves the medium unchanged.
+  bool medium_boundary = false;
+  std::shared_ptr<const Medium> interior, exterior;
+  std::string id;
+  SourceLocation where;
+};
+
+/// What the integrator was asked to do in a scene file, as text: "max_depth" → "64".
+struct IntegratorSettings {
+  std::string type;
+  std::vector<std::pair<std::string, std::string>> properties;
+};
+
+struct SceneDescription {
+  std::vector<Surface> surfaces;
+  std::vector<std::shared_ptr<Emitter>> emitters;  ///< those that are on no surface: point, constant
+  std::shared_ptr<const Sensor> sensor;
+  std::shared_ptr<const Medium> sensor_medium;
+  bool sensor_medium_declared = false;
+  FilmSettings film;
+  IntegratorSettings integrator;
+  std::string title;           ///< file name or what the user calls it
+  std::uint64_t content_hash = 0;
+};
+
+/// An immutable scene, ready for rays.
+class Scene {
+ public:
+  /// Throws Error(Scene) on what cannot be rendered; with `strict` also on what is only warned of
+  /// (open or self-intersecting medium boundaries, camera or point light in an undeclared medium).
+  explicit Scene(SceneDescription description, bool strict = false);
+  ~Scene();
+  Scene(const Scene&) = delete;
+
+  const Accel& accel() const { return *accel_; }
+  const Surface& surface(std::uint32_t shape) const { return description_.surfaces[shape]; }
+  const std::vector<Surface>& surfaces() const { return description_.surfaces; }
+  SurfacePoint surface_point(const Hit& hit) const {
+    return surface(hit.id.shape).shape->surface_point(hit.id.primitive, hit.local);
+  }
+
+  const Sensor& sensor() const { return *description_.sensor; }
+  const Medium* sensor_medium() const { return description_.sensor_medium.get(); }
+  const FilmSettings& film() const { return description_.film; }
+  const SceneDescription& description() const { return description_; }
+
+  /// The medium at a point that lies on no medium boundary (null: vacuum): that of the region between the boundaries which holds it.
+  const Medium* medium_at(const Vec3& p, PrimitiveId on = kNoPrimitive) const;
+  bool has_media() const { return has_media_; }
+  bool has_null_surfaces() const { return has_null_surfaces_; }
+
+  // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen in proportion to their power.
+  std::size_t emitter_count() const { return emitters_.size(); }
+  const Emitter& emitter(std::size_t i) const { return *emitters_[i]; }
+  const DiscreteDistribution& emitter_distribution() const { return emitter_distribution_; }
+  /// Index of a surface's emitter, or of a medium's Volume emitter, in the list; −1 if it does not emit.
+  int emitter_of_surface(std::uint32_t shape) const { return emitter_of_surface_[shape]; }
+  int emitter_of_medium(const Medium* medium) const;
+  const std::vector<int>& infinite_emitters() const { return infinite_emitters_; }
+
+  Bounds bounds() const { return bounds_; }
+  /// Radius of the sphere around the scene: what relative tolerances refer to.
+  double radius() const { return radius_; }
+  /// What the load-time checks found, one line each with shape and place.
+  const std::vector<std::string>& warnings() const { return warnings_; }
+
+ private:
+  void check_boundaries(bool strict);
+  void collect_emitters();
+
+  SceneDescription description_;
+  std::unique_ptr<Accel> accel_;
+  std::unique_ptr<Accel> boundary_accel_;       ///< of the medium boundaries alone
+  std::vector<std::uint32_t> boundary_shapes_;  ///< ids in accel_ of boundary_accel_'s shapes
+  struct Anchor;                                ///< a point on a boundary to look at
+  std::vector<Anchor> anchors_;
+  std::vector<std::shared_ptr<Emitter>> emitters_;
+  std::vector<int> emitter_of_surface_;
+  std::vector<std::pair<const Medium*, int>> emitter_of_medium_;
+  std::vector<int> infinite_emitters_;
+  DiscreteDistribution emitter_distribution_;
+  Bounds bounds_;
+  double radius_ = 0;
+  bool has_media_ = false, has_null_surfaces_ = false;
+  std::vector<std::string> warnings_;
+};
+
+}  // namespace fogbow
