@@ -1,0 +1,30 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <string>
+
+#include "core/geometry/shape.h"
+#include "core/math/transform.h"
+
+namespace fogbow {
+
+/// World-space triangles; `normals` and `uvs` are empty or one per vertex.
+struct TriangleMeshData {
+  std::vector<Vec3> positions;
+  std::vector<Vec3> normals;
+  std::vector<Vec2> uvs;
+  std::vector<std::array<std::uint32_t, 3>> triangles;
+};
+
+/// Smooth where normals are given. Degenerate triangles are dropped and counted in a warning. Throws std::domain_error on indices out of range or non-finite data.
+std::shared_ptr<const Shape> make_mesh(TriangleMeshData data);
+/// Normals weighted by the angles at each vertex, for meshes that are to look smooth and bring none.
+std::vector<Vec3> vertex_normals(const TriangleMeshData& data);
+/// `flip_normals` turns the inside out.
+std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius, bool flip_normals = false);
+/// The image of [−1,1]² × {0} with normal +z; exact.
+std::shared_ptr<const Shape> make_rectangle(const Transform& to_world, bool flip_normals = false);
+/// The image of [−1,1]³, normals outwards; exact.
+std::shared_ptr<const Shape> make_cube(const Transform& to_world, bool flip_normals = false);
+
+}  // namespace fogbow

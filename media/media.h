@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <string>
+
+#include "core/scene/medium.h"
+#include "core/scene/phase_function.h"
+
+namespace fogbow {
+
+std::shared_ptr<const PhaseFunction> make_isotropic_phase();
+/// Henyey and Greenstein 1941; g in (−1, 1).
+std::shared_ptr<const PhaseFunction> make_henyey_greenstein(double g);
+
+/// Chromatic; albedo = σ_s/σ_t in [0, 1]; `emission` is radiance per unit length and needs σ_t > 0 in some channel.
+/// Throws std::domain_error on negative or non-finite coefficients.
+std::shared_ptr<const Medium> make_homogeneous_medium(const RGB& sigma_t, const RGB& albedo,
+                                                      std::shared_ptr<const PhaseFunction> phase,
+                                                      const RGB& emission = RGB(0),
+                                                      std::string id = {});
+
+}  // namespace fogbow
