@@ -38,7 +38,7 @@ double compare(const Estimate& a, double value);
 /// Probability that a two-sided test at `level` detects a true difference of `bias`, given both standard errors and Welch's degrees of freedom.
 double power(const Estimate& a, const Estimate& b, double bias, double level);
 
-/// The seed of a suite: fixed, or from FOGBOW_FRESH_SEED in the environment; printed by the test main.
+/// The seed of a suite: fixed, or from FOGBOW_FRESH_SEED in the environment (a number; anything else draws one). Printed when first asked for.
 std::uint64_t suite_seed();
 
 }  // namespace fogbow::testing
