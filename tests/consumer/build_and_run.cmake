@@ -1,0 +1,23 @@
+# Installs Fogbow under BUILD_DIR/stage/KIND, builds this folder's project against it as any user would, and runs it.
+set(stage ${BUILD_DIR}/stage/${KIND})
+file(REMOVE_RECURSE ${stage})
+set(toolchain -G ${GENERATOR} -DCMAKE_CXX_COMPILER=${CXX_COMPILER} -DCMAKE_BUILD_TYPE=${BUILD_TYPE}
+  -DCMAKE_CXX_FLAGS_RELWITHDEBINFO=${CXX_FLAGS})
+set(is_shared_KIND_static OFF)
+set(is_shared_KIND_shared ON)
+
+function(run)
+  execute_process(COMMAND ${ARGN} COMMAND_ECHO STDOUT COMMAND_ERROR_IS_FATAL ANY)
+endfunction()
+
+set(library_build ${BUILD_DIR})
+if(NOT is_shared_KIND_${KIND} STREQUAL BUILD_SHARED_LIBS)
+  # The other kind of library; ccache makes its objects from those of the main build.
+  set(library_build ${stage}-build)
+  run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${library_build} ${toolchain} -DBUILD_SHARED_LIBS=${is_shared_KIND_${KIND}} -DFOGBOW_BUILD_TESTS=OFF)
+  run(${CMAKE_COMMAND} --build ${library_build} --parallel 2)
+endif()
+run(${CMAKE_COMMAND} --install ${library_build} --prefix ${stage})
+run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/consumer -B ${stage}/consumer --fresh ${toolchain} -DCMAKE_PREFIX_PATH=${stage})
+run(${CMAKE_COMMAND} --build ${stage}/consumer)
+run(${stage}/consumer/consumer)
