@@ -7,6 +7,7 @@
 namespace fogbow {
 
 /// A separable reconstruction filter in pixel units, symmetric, with integral one.
+/// The constructors below throw std::domain_error on a width that is not positive.
 class ReconstructionFilter {
  public:
   virtual ~ReconstructionFilter() = default;
@@ -19,6 +20,7 @@ class ReconstructionFilter {
 
 std::unique_ptr<ReconstructionFilter> make_box_filter(double radius = 0.5);
 std::unique_ptr<ReconstructionFilter> make_tent_filter(double radius = 1);
+/// Radius four standard deviations.
 std::unique_ptr<ReconstructionFilter> make_gaussian_filter(double stddev = 0.5);
 
 }  // namespace fogbow

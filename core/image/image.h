@@ -13,14 +13,19 @@ struct Image {
   int width = 0, height = 0;
   /// Place of the pixels (data window origin) in the whole picture (display window).
   int x = 0, y = 0, full_width = 0, full_height = 0;
-  std::vector<std::string> channels;  ///< "R", "G", "B", "Error.R", … 
+  std::vector<std::string> channels;  ///< "R", "G", "B", "Error.R", …
   std::vector<float> pixels;
-  using Attribute = std::variant<int, float, std::string, std::vector<float>>;  ///< vector: a 4x4 matrix, row-major
+  using Attribute = std::variant<int, float, std::string,
+                                 std::vector<float>>;  ///< vector: a 4x4 matrix, row-major
   std::map<std::string, Attribute> metadata;
 
   Image() = default;
   Image(int w, int h, std::vector<std::string> names)
-      : width(w), height(h), full_width(w), full_height(h), channels(std::move(names)),
+      : width(w),
+        height(h),
+        full_width(w),
+        full_height(h),
+        channels(std::move(names)),
         pixels(static_cast<std::size_t>(w) * h * channels.size()) {}
 
   float& at(int column, int row, int channel) {
