@@ -15,8 +15,8 @@ struct Image {
   int x = 0, y = 0, full_width = 0, full_height = 0;
   std::vector<std::string> channels;  ///< "R", "G", "B", "Error.R", …
   std::vector<float> pixels;
-  using Attribute = std::variant<int, float, std::string,
-                                 std::vector<float>>;  ///< vector: a 4x4 matrix, row-major
+  /// A vector holds a 4x4 matrix, row-major and for row vectors: the memory order of Mat4.
+  using Attribute = std::variant<int, float, std::string, std::vector<float>>;
   std::map<std::string, Attribute> metadata;
 
   Image() = default;
