@@ -1,0 +1,88 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/estimators/estimator.h"
+#include "core/path/connection.h"
+
+namespace fogbow {
+
+namespace {
+
+/// Light that the eye subpath runs into at its t-th vertex; every infinite emitter is there at
+/// once.
+void add_emission(const Scene& scene, Workspace& w, int t, const Vec2& raster) {
+  Vertex& x = w.eye[t - 1].x;
+  const auto add = [&] {
+    if (const auto c = run_into_light(scene, w.eye, t))
+      w.add({raster, c->weight * c->value, t, 0, t});
+  };
+  if (!x.infinite()) return add();
+  for (const int emitter : scene.infinite_emitters()) {
+    x.emitter = emitter;
+    add();
+  }
+}
+
+class Bdpt final : public Estimator {
+ public:
+  Bdpt(const Scene& scene, const EstimatorSettings& settings)
+      : scene_(scene), max_vertices_(settings.max_depth + 1) {}
+
+  void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override {
+    w.contributions.clear();
+    Vec2 raster;
+    trace_eye_subpath(scene_, eye, max_vertices_, w.eye, raster);
+    // Of the last vertex only the emission is used.
+    trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
+    const int eye_size = static_cast<int>(w.eye.size());
+    const int light_size = static_cast<int>(w.light.size());
+    for (int t = 1; t <= eye_size; ++t) {
+      if (w.eye[t - 1].x.emitter >= 0 && t >= 2) add_emission(scene_, w, t, raster);
+      for (int s = 1; s <= light_size && s + t <= max_vertices_; ++s) {
+        const auto c = join(scene_, w.light, s, w.eye, t);
+        if (c) w.add({t == 1 ? c->raster : raster, c->weight * c->value, s + t, s, t});
+      }
+    }
+  }
+
+  const char* name() const override { return "bdpt"; }
+
+ private:
+  const Scene& scene_;
+  int max_vertices_;
+};
+
+/// Of all techniques that with t = 1, and alone: its weight is one.
+class LightTracer final : public Estimator {
+ public:
+  LightTracer(const Scene& scene, const EstimatorSettings& settings)
+      : scene_(scene), max_vertices_(settings.max_depth + 1) {}
+
+  void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override {
+    w.contributions.clear();
+    Vec2 raster;
+    trace_eye_subpath(scene_, eye, 1, w.eye, raster);
+    trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
+    for (int s = 1; s <= static_cast<int>(w.light.size()); ++s) {
+      const auto c = join(scene_, w.light, s, w.eye, 1);
+      if (c) w.add({c->raster, c->value, s + 1, s, 1});
+    }
+  }
+
+  const char* name() const override { return "light"; }
+
+ private:
+  const Scene& scene_;
+  int max_vertices_;
+};
+
+}  // namespace
+
+std::unique_ptr<Estimator> make_bdpt(const Scene& scene, const EstimatorSettings& settings) {
+  return std::make_unique<Bdpt>(scene, settings);
+}
+
+std::unique_ptr<Estimator> make_light_tracer(const Scene& scene,
+                                             const EstimatorSettings& settings) {
+  return std::make_unique<LightTracer>(scene, settings);
+}
+
+}  // namespace fogbow

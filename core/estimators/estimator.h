@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <memory>
+#include <vector>
+
+#include "core/path/subpath.h"
+
+namespace fogbow {
+
+/// What one sample adds to the picture: an unbiased part of ∫ f dμ at `raster` (in [0,1)²), without
+/// the pixel filter.
+struct Contribution {
+  Vec2 raster;
+  RGB value;
+  int k;     ///< vertices of the path
+  int s, t;  ///< vertices from the light and from the eye
+};
+
+/// Buffers an estimator reuses; one a thread or chain.
+struct Workspace {
+  Subpath light, eye;
+  std::vector<Contribution> contributions;
+  std::uint64_t refused = 0;  ///< non-finite contributions, refused
+
+  void add(const Contribution& c) {
+    if (!is_finite(c.value))
+      ++refused;
+    else if (!is_black(c.value))
+      contributions.push_back(c);
+  }
+};
+
+/// An unbiased estimator of the picture from primary samples: the mean over samples of all
+/// contributions is ∫ f dμ.
+class Estimator {
+ public:
+  virtual ~Estimator() = default;
+  /// Replaces the contributions in `workspace`. `eye` and `light` are separate streams; the raster
+  /// position is the first two of `eye`.
+  virtual void sample(SampleStream& light, SampleStream& eye, Workspace& workspace) const = 0;
+  virtual const char* name() const = 0;
+};
+
+struct EstimatorSettings {
+  int max_depth = 64;  ///< longest path, in edges: k ≤ max_depth + 1
+  int rr_depth = 5;    ///< path: edges before roulette on the throughput starts
+};
+
+/// Volumetric path tracing: next-event estimation with multiple importance sampling; in media also
+/// at equiangular distances [Kulla2012].
+std::unique_ptr<Estimator> make_path_tracer(const Scene& scene, const EstimatorSettings& settings);
+/// Light subpaths connected to the sensor; sees no class that needs another technique.
+std::unique_ptr<Estimator> make_light_tracer(const Scene& scene, const EstimatorSettings& settings);
+/// All techniques (s,t) over surface and medium vertices, weighted by the balance heuristic
+/// [Veach1997].
+std::unique_ptr<Estimator> make_bdpt(const Scene& scene, const EstimatorSettings& settings);
+
+}  // namespace fogbow

@@ -1,0 +1,98 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/path/connection.h"
+
+namespace fogbow {
+
+namespace {
+
+/// Scattering at the end of a subpath that is joined along `w` (away from it); emission and
+/// importance at the very ends.
+Scattering scatter_at_end(const Scene& scene, const Subpath& path, int n, const Vec3& w,
+                          Side side) {
+  const SubpathVertex& x = path[n - 1];
+  if (n > 1) {
+    const Vec3 back = -x.edge.w;
+    return side == Side::Light ? scatter(scene, x.x, back, w, false)
+                               : scatter(scene, x.x, w, back, false);
+  }
+  Scattering end;
+  if (side == Side::Light) {
+    end.f_hat = L_e(scene, x.x, w);
+  } else {
+    end.f_hat = RGB(W_e(scene, x.x, w));
+    end.pdf_to_light = scene.sensor().pdf_sigma(x.x.position(), w);
+  }
+  return end;
+}
+
+/// Σ_{j<n} p_j/p_n on one side: `pdf_last` and `pdf_before` are the densities of the last two
+/// vertices sampled from the other end.
+double sum_techniques(const Scene& scene, const Subpath& path, int n, double pdf_last,
+                      double pdf_before, Side side) {
+  if (n == 1) return other_techniques(scene, path, 0, pdf_last, side);
+  const double before = other_techniques(scene, path, n - 2, pdf_before, side);
+  const bool connects = !path[n - 2].x.degenerate;
+  return pdf_last / path[n - 1].pdf * (connects + before);
+}
+
+double pdf_previous(const Subpath& path, int n, double pdf_sigma) {
+  if (n < 2) return 0;
+  return pdf_arrival(path[n - 2].x, reversed(path[n - 1].edge), pdf_sigma);
+}
+
+}  // namespace
+
+std::optional<Connection> join(const Scene& scene, const Subpath& light, int s, const Subpath& eye,
+                               int t) {
+  const SubpathVertex& y = light[s - 1];
+  const SubpathVertex& z = eye[t - 1];
+  if (!y.connects || !z.connects || z.x.infinite()) return std::nullopt;
+
+  // Cheap factors first: most pairs fail on them, before a ray is traced.
+  const Vec3 w = y.x.infinite() ? y.x.point.n_g : normalize(z.x.position() - y.x.position());
+  const Scattering at_z = scatter_at_end(scene, eye, t, -w, Side::Eye);
+  if (is_black(at_z.f_hat)) return std::nullopt;
+  const Scattering at_y = scatter_at_end(scene, light, s, w, Side::Light);
+  if (is_black(at_y.f_hat)) return std::nullopt;
+  const auto edge = connect(scene, y.x, z.x);
+  if (!edge || is_black(edge->tau)) return std::nullopt;
+
+  Connection c;
+  c.value = y.throughput * at_y.f_hat * edge->tau * at_z.f_hat * z.throughput *
+            geometric_term(scene, y.x, z.x, *edge);
+  if (t == 1) {
+    const auto raster = scene.sensor().raster(z.x.position(), -w);
+    if (!raster) return std::nullopt;
+    c.raster = *raster;
+  }
+  const double pdf_y = pdf_arrival(y.x, reversed(*edge), at_z.pdf_to_light);
+  const double light_sum = sum_techniques(scene, light, s, pdf_y,
+                                          pdf_previous(light, s, at_y.pdf_to_light), Side::Light);
+  double eye_sum = 0;
+  if (t > 1) {
+    const double pdf_z = s == 1 ? pdf_emission(scene, y.x, z.x, *edge) * pdf_distance(*edge, z.x)
+                                : pdf_arrival(z.x, *edge, at_y.pdf_to_eye);
+    eye_sum =
+        sum_techniques(scene, eye, t, pdf_z, pdf_previous(eye, t, at_z.pdf_to_eye), Side::Eye);
+  }
+  c.weight = 1 / (1 + light_sum + eye_sum);
+  return c;
+}
+
+std::optional<Connection> run_into_light(const Scene& scene, const Subpath& eye, int t) {
+  const SubpathVertex& x = eye[t - 1];
+  if (t < 2 || !hittable(scene, x.x)) return std::nullopt;
+  const Edge back = reversed(x.edge);
+  const RGB radiance = L_e(scene, x.x, back.w);
+  if (is_black(radiance)) return std::nullopt;
+  Connection c;
+  c.value = x.throughput * radiance;
+  const Vertex& before = eye[t - 2].x;
+  const double pdf_before = pdf_emission(scene, x.x, before, back) * pdf_distance(back, before);
+  const double sum =
+      sum_techniques(scene, eye, t, pdf_emitter_position(scene, x.x), pdf_before, Side::Eye);
+  c.weight = 1 / (1 + sum);
+  return c;
+}
+
+}  // namespace fogbow

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/path/measurement.h"
+
+namespace fogbow {
+
+namespace {
+
+const Bsdf& bsdf(const Scene& scene, const Vertex& x) { return *scene.surface(x.id.shape).bsdf; }
+
+/// Index of refraction on the side of a local direction, relative to the exterior.
+double index_at(const Bsdf& bsdf, const Vec3& local) { return local.z > 0 ? 1.0 : bsdf.eta(); }
+
+struct LocalDirections {
+  Vec3 light, eye;    // in the shading frame
+  double correction;  // |N_s·w_light| / |N_g·w_light|
+  bool consistent;    // shading and geometric normal agree on the sides
+};
+
+LocalDirections localize(const SurfacePoint& p, const Vec3& w_light, const Vec3& w_eye) {
+  LocalDirections d;
+  d.light = p.shading.to_local(w_light);
+  d.eye = p.shading.to_local(w_eye);
+  const double g_light = dot(p.n_g, w_light), g_eye = dot(p.n_g, w_eye);
+  d.consistent = d.light.z * g_light > 0 && d.eye.z * g_eye > 0;
+  d.correction = d.light.z / g_light;
+  return d;
+}
+
+/// Survival of roulette: what sampling `to` given `from` would multiply the throughput by, without
+/// the (n_from/n_to)² of radiance, which the next refraction undoes. A function of the vertex and
+/// its neighbours, so that densities stay functions of the path.
+double survival(const RGB& f, double cos_to, double pdf, double index_ratio_squared) {
+  if (!(pdf > 0)) return 0;
+  return std::fmin(1.0, max_component(f) * cos_to / pdf * index_ratio_squared);
+}
+
+Scattering scatter_surface(const Scene& scene, const Vertex& x, const Vec3& w_light,
+                           const Vec3& w_eye, bool degenerate) {
+  const SurfacePoint& p = x.point;
+  const LocalDirections d = localize(p, w_light, w_eye);
+  if (!d.consistent) return {};
+  const Bsdf& b = bsdf(scene, x);
+  const RGB f = degenerate ? b.f_dirac(p, d.light, d.eye) : b.f_s(p, d.light, d.eye);
+  if (is_black(f)) return {};
+  const double to_light =
+      degenerate ? b.pdf_dirac(p, d.eye, d.light) : b.pdf_sigma(p, d.eye, d.light);
+  const double to_eye =
+      degenerate ? b.pdf_dirac(p, d.light, d.eye) : b.pdf_sigma(p, d.light, d.eye);
+  const double ratio = sqr(index_at(b, d.light) / index_at(b, d.eye));
+  const double stay_to_light = survival(f, std::abs(d.light.z), to_light, ratio);
+  const double stay_to_eye = survival(f, std::abs(d.eye.z), to_eye, 1.0);
+  return {f * d.correction, to_light * stay_to_light, to_eye * stay_to_eye, stay_to_light,
+          stay_to_eye};
+}
+
+Scattering scatter_medium(const Vertex& x, const Vec3& w_light, const Vec3& w_eye) {
+  const PhaseFunction& phase = x.medium->phase();
+  const RGB sigma_s = x.medium->sigma_s(x.position()), sigma_t = x.medium->sigma_t(x.position());
+  const RGB f_p = phase.f_p(w_light, w_eye);
+  double albedo = 0;
+  for (int c = 0; c < 3; ++c)
+    if (sigma_t[c] > 0) albedo = std::fmax(albedo, sigma_s[c] / sigma_t[c]);
+  return {sigma_s * f_p, albedo * phase.pdf_sigma(w_eye, w_light),
+          albedo * phase.pdf_sigma(w_light, w_eye), albedo, albedo};
+}
+
+}  // namespace
+
+double D(const Scene& scene, const Vertex& x, const Vec3& w) {
+  switch (x.kind) {
+    case VertexKind::Surface: return std::abs(dot(x.point.n_g, w));
+    case VertexKind::Sensor: return scene.sensor().D(w);
+    case VertexKind::Medium:
+    case VertexKind::PointLight:
+    case VertexKind::InfiniteLight: return 1;
+  }
+  return 1;
+}
+
+double geometric_term(const Scene& scene, const Vertex& a, const Vertex& b, const Edge& a_to_b) {
+  const double d = D(scene, a, a_to_b.w) * D(scene, b, -a_to_b.w);
+  return a.infinite() || b.infinite() ? d : d / sqr(a_to_b.length);
+}
+
+Scattering scatter(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
+                   bool degenerate) {
+  if (x.on_surface()) return scatter_surface(scene, x, w_light, w_eye, degenerate);
+  FOGBOW_CHECK(x.in_medium());
+  return scatter_medium(x, w_light, w_eye);
+}
+
+RGB f_hat(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
+          bool degenerate) {
+  if (x.in_medium()) return x.medium->sigma_s(x.position()) * x.medium->phase().f_p(w_light, w_eye);
+  FOGBOW_CHECK(x.on_surface());
+  const LocalDirections d = localize(x.point, w_light, w_eye);
+  if (!d.consistent) return RGB(0);
+  const Bsdf& b = bsdf(scene, x);
+  return d.correction *
+         (degenerate ? b.f_dirac(x.point, d.light, d.eye) : b.f_s(x.point, d.light, d.eye));
+}
+
+RGB L_e(const Scene& scene, const Vertex& x, const Vec3& w) {
+  if (x.emitter < 0) return RGB(0);
+  return scene.emitter(x.emitter).L_e(emitter_point(x), w);
+}
+
+double W_e(const Scene& scene, const Vertex& x, const Vec3& w) {
+  return scene.sensor().W_e(x.position(), w);
+}
+
+std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex& x,
+                                                const Vec3& from, Side side, const Vec3& u,
+                                                double v) {
+  DirectionSample s{Vec3(0), false, {}};
+  if (x.in_medium()) {
+    s.w = x.medium->phase().sample(from, Vec2(u.y, u.z));
+  } else {
+    const auto local = bsdf(scene, x).sample(x.point, x.point.shading.to_local(from), u);
+    if (!local) return std::nullopt;
+    s.w = x.point.shading.to_world(local->w);
+    s.degenerate = local->dirac;
+  }
+  const bool eye = side == Side::Eye;
+  s.scattering = scatter(scene, x, eye ? s.w : from, eye ? from : s.w, s.degenerate);
+  const double pdf = eye ? s.scattering.pdf_to_light : s.scattering.pdf_to_eye;
+  const double stay = eye ? s.scattering.survival_to_light : s.scattering.survival_to_eye;
+  if (!(pdf > 0) || v >= stay) return std::nullopt;
+  return s;
+}
+
+double relative_index(const Scene& scene, const Vertex& x, const Vec3& w) {
+  if (!x.on_surface()) return 1;
+  return index_at(bsdf(scene, x), x.point.shading.to_local(w));
+}
+
+bool connectible(const Scene& scene, const Vertex& x) {
+  if (x.on_surface()) return bsdf(scene, x).has_smooth();
+  return !x.in_medium() || x.medium->scatters();
+}
+
+double to_measure(const Vertex& y, const Edge& x_to_y, double pdf_sigma) {
+  if (y.infinite()) return pdf_sigma;
+  const double density = pdf_sigma / sqr(x_to_y.length);
+  return y.on_surface() ? density * std::abs(dot(y.point.n_g, x_to_y.w)) : density;
+}
+
+double pdf_emission(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y) {
+  const double pdf = scene.emitter(x.emitter).pdf_direction(emitter_point(x), x_to_y.w);
+  if (!x.infinite()) return to_measure(y, x_to_y, pdf);
+  return pdf * D(scene, y, x_to_y.w);  // parallel light: density across the ray
+}
+
+EmitterPoint emitter_point(const Vertex& x) { return {x.point, x.id, 0}; }
+
+double pdf_emitter_position(const Scene& scene, const Vertex& x) {
+  if (x.emitter < 0) return 0;
+  return scene.emitter_distribution().probability(x.emitter) *
+         scene.emitter(x.emitter).pdf_position(emitter_point(x));
+}
+
+}  // namespace fogbow

@@ -1,0 +1,75 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "core/path/transport.h"
+#include "core/path/vertex.h"
+
+namespace fogbow {
+
+// The factors of f_j, each a function of the path alone [Jakob2013, ch. 3].
+
+/// |N_g·w| on surfaces and lenses, 1 in media, at pinholes, point lights and at infinity.
+double D(const Scene& scene, const Vertex& x, const Vec3& w);
+
+/// D_a D_b / ‖a−b‖², with w from a to b; visibility and transmittance are the edge's. At an
+/// infinite end D_b alone, the measure there being solid angle.
+double geometric_term(const Scene& scene, const Vertex& a, const Vertex& b, const Edge& a_to_b);
+
+/// f̂: BSDF with the correction for shading normals [Veach1997, eq. 5.17], or σ_s f_p; both
+/// directions away from x. For `degenerate` scattering the Dirac value whose delta cancels in
+/// ratios (see bsdf.h).
+RGB f_hat(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
+          bool degenerate);
+
+/// Emitted radiance of x₁ along w; for an infinite light `w` is where its light travels.
+RGB L_e(const Scene& scene, const Vertex& x, const Vec3& w);
+
+/// W_e without the pixel filter, along w away from the sensor.
+double W_e(const Scene& scene, const Vertex& x, const Vec3& w);
+
+/// Everything that sampling needs to know of scattering at x: f̂ and the densities in solid angle of
+/// going on to either side.
+struct Scattering {
+  RGB f_hat{0};
+  double pdf_to_light = 0;                            ///< of w_light given w_eye, roulette included
+  double pdf_to_eye = 0;                              ///< of w_eye given w_light, roulette included
+  double survival_to_light = 0, survival_to_eye = 0;  ///< the roulette's part of them
+};
+Scattering scatter(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
+                   bool degenerate);
+
+/// Which end a subpath starts from.
+enum class Side : std::uint8_t { Light, Eye };
+
+/// A direction drawn at x; absorption and roulette have been survived.
+struct DirectionSample {
+  Vec3 w;
+  bool degenerate;
+  Scattering scattering;
+};
+/// `from` is the direction to the previous vertex; u = (lobe, direction, direction), v the
+/// roulette's.
+std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex& x,
+                                                const Vec3& from, Side side, const Vec3& u,
+                                                double v);
+
+/// Index of refraction on the side of x to which w points, relative to the exterior; 1 off
+/// surfaces.
+double relative_index(const Scene& scene, const Vertex& x, const Vec3& w);
+
+/// Whether a subpath may end at x to be connected there.
+bool connectible(const Scene& scene, const Vertex& x);
+
+/// From density in solid angle at x to density in μ at y (dA, dV; dσ at infinity), the edge leading
+/// from x to y; the distance along the ray is not included.
+double to_measure(const Vertex& y, const Edge& x_to_y, double pdf_sigma);
+
+/// Density in μ of y when x₁ emits along the edge (distance along the ray not included).
+double pdf_emission(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y);
+
+/// x₁ as its emitter sees it.
+EmitterPoint emitter_point(const Vertex& x);
+/// Density in μ of choosing this emitter and this position on it (dσ of the direction for infinite
+/// lights).
+double pdf_emitter_position(const Scene& scene, const Vertex& x);
+
+}  // namespace fogbow

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <vector>
+
+#include "core/path/measurement.h"
+
+namespace fogbow {
+
+/// Where primary samples come from: a random stream, or the state of a chain.
+class SampleStream {
+ public:
+  virtual ~SampleStream() = default;
+  virtual double next() = 0;
+
+  Vec2 next2() {
+    const double x = next();
+    return {x, next()};
+  }
+  Vec3 next3() {
+    const double x = next(), y = next();
+    return {x, y, next()};
+  }
+};
+
+/// A vertex of a subpath with what came with it from its own end.
+struct SubpathVertex {
+  Vertex x;
+  Edge edge;          ///< from the previous vertex to this
+  RGB throughput{0};  ///< factors of f up to the arrival here over their density
+  double pdf =
+      0;  ///< density in μ of this vertex given the two before it, roulette and distance included
+  /// Σ_{j<i} p_j/p_i over the techniques that move the connection towards this subpath's end, i
+  /// being this vertex; final once two more vertices follow.
+  double other_techniques = 0;
+  bool connects = false;
+};
+
+using Subpath = std::vector<SubpathVertex>;
+
+/// Samples x₁ with its density in μ; false where the emitter gives no point.
+bool sample_emitter(const Scene& scene, SampleStream& u, SubpathVertex& start);
+
+/// Light that has come from beyond the scene along an escaped ray: its vertex at infinity; false if
+/// nothing shines there.
+bool make_infinite_vertex(const Scene& scene, const Edge& edge, Vertex& x);
+
+/// Traces vertices from the emitters until roulette, absorption, escape or `max_vertices` ends the
+/// walk.
+void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path);
+
+/// The same from the sensor; `raster` is where the film was sampled. Ends also at infinite
+/// emitters, whose vertex is the last.
+void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path,
+                       Vec2& raster);
+
+/// Density of sampling x as the end of an edge that leaves its predecessor with density pdf_sigma.
+inline double pdf_arrival(const Vertex& x, const Edge& to_x, double pdf_sigma) {
+  return to_measure(x, to_x, pdf_sigma) * pdf_distance(to_x, x);
+}
+
+/// The same edge seen from its other end.
+inline Edge reversed(Edge edge) {
+  edge.w = -edge.w;
+  return edge;
+}
+
+/// Σ_{j<i} p_j/p_i for path[i] when the density of its being sampled from the other end has become
+/// known.
+double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, double pdf_reverse,
+                        Side side);
+
+/// Whether a path may end at x₁ by running into it.
+inline bool hittable(const Scene& scene, const Vertex& x) {
+  return x.emitter >= 0 && scene.emitter(x.emitter).kind() != EmitterKind::Point;
+}
+
+}  // namespace fogbow

@@ -1,0 +1,188 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/path/transport.h"
+
+namespace fogbow {
+
+namespace {
+
+thread_local std::uint64_t ray_count = 0;
+
+/// Multiplies an edge's transmittance by that of one medium over [t0, t1].
+void attenuate(Edge& edge, const Medium* medium, const Ray& ray, double t0, double t1) {
+  if (!medium) return;
+  const RGB tau = glm::exp(-medium->optical_depth(ray, t0, t1));
+  edge.tau *= tau;
+  if (is_sampled(medium)) edge.tau_q *= tau;
+}
+
+bool passes(const Scene& scene, const Surface& surface, const SurfacePoint& point) {
+  return scene.has_null_surfaces() && surface.bsdf->opacity(point) == 0;
+}
+
+const Medium* behind(const Surface& surface, const SurfacePoint& point, const Vec3& w,
+                     const Medium* before) {
+  if (!surface.medium_boundary) return before;
+  return dot(w, point.n_g) > 0 ? surface.exterior.get() : surface.interior.get();
+}
+
+/// Optical depth that free flight is to cover, and the channel in which it is measured.
+struct FreeFlight {
+  int channel;
+  double remaining;
+
+  explicit FreeFlight(const Vec2& u)
+      : channel(std::min(static_cast<int>(u.x * 3), 2)), remaining(-std::log1p(-u.y)) {}
+};
+
+void make_surface_vertex(const Scene& scene, const Hit& hit, const SurfacePoint& point,
+                         const Medium* medium, Vertex& next) {
+  next.kind = VertexKind::Surface;
+  next.degenerate = false;
+  next.point = point;
+  next.id = hit.id;
+  next.medium = medium;
+  next.emitter = scene.emitter_of_surface(hit.id.shape);
+}
+
+void make_medium_vertex(const Scene& scene, const Vec3& position, const Medium* medium,
+                        Vertex& next) {
+  next.kind = VertexKind::Medium;
+  next.degenerate = false;
+  next.point.position = position;
+  next.id = kNoPrimitive;
+  next.medium = medium;
+  next.emitter = medium->emits() ? scene.emitter_of_medium(medium) : -1;
+}
+
+/// Multiplies `edge` by the transmittance along the ray; false where a surface is in the way.
+/// `medium` is the one at the ray's end.
+bool unobstructed(const Scene& scene, Ray ray, const Vertex& start, PrimitiveId to, Edge& edge,
+                  const Medium*& medium) {
+  medium = medium_toward(scene, start, ray.d);
+  PrimitiveId from = start.id;
+  if (!scene.has_null_surfaces() && ray.t_max < kInfinity) {
+    ++ray_count;
+    if (scene.accel().occluded(ray(ray.t_min), ray(ray.t_max), from, to)) return false;
+    attenuate(edge, medium, ray, ray.t_min, ray.t_max);
+    return true;
+  }
+  for (;;) {
+    ++ray_count;
+    const auto hit = scene.accel().intersect(ray, from);
+    if (!hit) {
+      attenuate(edge, medium, ray, ray.t_min, ray.t_max);
+      return true;
+    }
+    const Surface& surface = scene.surface(hit->id.shape);
+    const SurfacePoint point = scene.surface_point(*hit);
+    if (!passes(scene, surface, point)) return false;
+    attenuate(edge, medium, ray, ray.t_min, hit->t);
+    medium = behind(surface, point, ray.d, medium);
+    ray.t_min = hit->t;
+    from = hit->id;
+  }
+}
+
+}  // namespace
+
+std::uint64_t rays_traced() { return ray_count; }
+
+ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u, Vertex& next,
+                    Edge& edge, double t_min, double t_max) {
+  Ray ray{x.position(), w, t_min, t_max};
+  const Medium* medium = medium_toward(scene, x, w);
+  PrimitiveId from = x.id;
+  FreeFlight flight(u);
+  edge = Edge{w, 0, RGB(1), RGB(1)};
+  for (;;) {
+    std::optional<double> stop;
+    if (is_sampled(medium))
+      stop = medium->distance(ray, ray.t_min, t_max, flight.channel, flight.remaining);
+    // Only what lies in front of the free flight's end matters.
+    ray.t_max = stop.value_or(t_max);
+    ++ray_count;
+    const auto hit = scene.accel().intersect(ray, from);
+    const double t = hit ? hit->t : ray.t_max;
+    attenuate(edge, medium, ray, ray.t_min, t);
+    if (!hit) {
+      edge.length = t;
+      if (!stop) return t_max == kInfinity ? ExtendResult::Escaped : ExtendResult::Lost;
+      make_medium_vertex(scene, ray(t), medium, next);
+      return ExtendResult::Reached;
+    }
+    const Surface& surface = scene.surface(hit->id.shape);
+    const SurfacePoint point = scene.surface_point(*hit);
+    if (!passes(scene, surface, point)) {
+      edge.length = t;
+      make_surface_vertex(scene, *hit, point, medium, next);
+      return ExtendResult::Reached;
+    }
+    if (is_sampled(medium))
+      flight.remaining -= medium->optical_depth(ray, ray.t_min, t)[flight.channel];
+    flight.remaining = std::fmax(flight.remaining, 0.0);
+    medium = behind(surface, point, w, medium);
+    ray.t_min = t;
+    from = hit->id;
+  }
+}
+
+Vec2 invert_distance(const Scene&, const Edge& edge, const Vertex& end, const Vec2& auxiliary) {
+  const RGB weights =
+      end.in_medium() ? end.medium->sigma_t(end.position()) * edge.tau_q : edge.tau_q;
+  double choice = auxiliary.x * (weights.x + weights.y + weights.z);
+  int channel = 0;
+  while (channel < 2 && choice >= weights[channel]) choice -= weights[channel++];
+  const double within = std::fmin(choice / weights[channel], kOneMinusEpsilon);
+  const double absorbed = 1 - edge.tau_q[channel];
+  // At a wall every u in (1 − τ, 1) leads there.
+  const double u = end.in_medium() ? absorbed : absorbed + auxiliary.y * edge.tau_q[channel];
+  return {std::fmin((channel + within) / 3, kOneMinusEpsilon), std::fmin(u, kOneMinusEpsilon)};
+}
+
+std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b) {
+  Edge edge;
+  // Light from infinity is traced backwards: its vertex has no position to start from.
+  const Vertex& start = a.infinite() ? b : a;
+  Ray ray{start.position(), Vec3(0), 0, kInfinity};
+  if (a.infinite()) {
+    edge.w = a.point.n_g;
+    edge.length = kInfinity;
+    ray.d = -edge.w;
+  } else {
+    const Vec3 d = b.position() - a.position();
+    edge.length = length(d);
+    if (!(edge.length > 0)) return std::nullopt;
+    edge.w = ray.d = d / edge.length;
+    ray.t_max = edge.length;
+  }
+  if (b.kind == VertexKind::Sensor) {
+    const double near = scene.sensor().near_distance(-edge.w);
+    const double far = scene.sensor().far_distance(-edge.w);
+    if (a.infinite()) {
+      ray.t_min = near;
+      ray.t_max = far;
+    } else {
+      if (!(edge.length > near) || edge.length > far) return std::nullopt;
+      ray.t_max = edge.length - near;
+    }
+  }
+  const Medium* medium;
+  if (!unobstructed(scene, ray, start, a.infinite() ? kNoPrimitive : b.id, edge, medium))
+    return std::nullopt;
+  return edge;
+}
+
+std::optional<Vertex> medium_vertex_at(const Scene& scene, const Vertex& x, const Vec3& w, double t,
+                                       double t_min, Edge& edge) {
+  edge = Edge{w, t, RGB(1), RGB(1)};
+  const Ray ray{x.position(), w, t_min, t};
+  const Medium* medium;
+  if (!(t > t_min) || !unobstructed(scene, ray, x, kNoPrimitive, edge, medium) ||
+      !is_sampled(medium))
+    return std::nullopt;
+  Vertex y;
+  make_medium_vertex(scene, ray(t), medium, y);
+  return y;
+}
+
+}  // namespace fogbow

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <optional>
+
+#include "core/path/vertex.h"
+
+namespace fogbow {
+
+/// Whether free flight makes vertices in this medium (null: vacuum).
+inline bool is_sampled(const Medium* medium) {
+  return medium && (medium->scatters() || medium->emits());
+}
+
+enum class ExtendResult { Reached, Escaped, Lost };
+
+/// Density of where free flight along `edge` ends: q(t) [1/length] at a medium vertex, the mass Q_M
+/// elsewhere. Channels are chosen uniformly.
+inline double pdf_distance(const Edge& edge, const Vertex& end) {
+  if (end.in_medium()) return mean(end.medium->sigma_t(end.position()) * edge.tau_q);
+  return mean(edge.tau_q);
+}
+
+/// Follows the ray that leaves `x` along `w` through index-matched boundaries to its next vertex,
+/// by free flight with primary samples u = (channel, distance). Escaped: `edge` describes the way
+/// to infinity. Lost: beyond `t_max`.
+ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u, Vertex& next,
+                    Edge& edge, double t_min = 0, double t_max = kInfinity);
+
+/// The primary samples with which `extend` would have ended on `end`, drawn from their conditional
+/// law by uniform auxiliaries.
+Vec2 invert_distance(const Scene& scene, const Edge& edge, const Vertex& end,
+                     const Vec2& auxiliary);
+
+/// The edge from `a` to `b`, nothing if a surface is in between: V and τ at once. `a` lies on the
+/// light's side: the answer is a function of the path alone.
+std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b);
+
+/// The medium vertex at distance t on the ray from `x` along `w`, nothing if a surface is in
+/// between or no vertices are sampled there; `edge` leads to it.
+std::optional<Vertex> medium_vertex_at(const Scene& scene, const Vertex& x, const Vec3& w, double t,
+                                       double t_min, Edge& edge);
+
+/// Rays traced by this thread so far.
+std::uint64_t rays_traced();
+
+}  // namespace fogbow
