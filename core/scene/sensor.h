@@ -21,7 +21,8 @@ class Sensor {
   virtual bool dirac_position() const = 0;
   virtual Vec3 sample_position(const Vec2& u) const = 0;
   virtual double pdf_A(const Vec3& position) const = 0;
-  virtual Vec2 invert_position(const Vec3& position) const = 0;
+  /// The u with sample_position(u) = position; `auxiliary` for pinholes, where any u will do.
+  virtual Vec2 invert_position(const Vec3& position, const Vec2& auxiliary) const = 0;
 
   /// D at the sensor for a direction away from it: 1 for pinholes, |cos| to the optical axis for lenses.
   virtual double D(const Vec3& w) const = 0;
