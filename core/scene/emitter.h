@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cstdint>
 #include <optional>
 
 #include "core/geometry/accel.h"
@@ -36,6 +37,8 @@ class Emitter {
 
   /// Called once when the scene is built; Infinite needs the sphere around the scene.
   virtual void bind(const Vec3& /*scene_center*/, double /*scene_radius*/) {}
+  /// Called once when the scene is built, with the scene's number of the shape that an Area emitter lies on: `id.shape` of its points.
+  virtual void bind_shape(std::uint32_t /*shape*/) {}
   /// Rough total power (any unit that all emitters of a scene share): weights of the choice between emitters.
   virtual RGB power() const = 0;
 
