@@ -1,0 +1,16 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <stdexcept>
+
+#include "core/math/vec.h"
+
+namespace fogbow {
+
+/// Radiance or intensity as given; throws std::domain_error if it is negative or not finite.
+inline RGB require_radiance(const RGB& radiance) {
+  if (!is_finite(radiance) || radiance.x < 0 || radiance.y < 0 || radiance.z < 0)
+    throw std::domain_error("what an emitter radiates must be finite and not negative");
+  return radiance;
+}
+
+}  // namespace fogbow
