@@ -1,0 +1,38 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include "core/math/vec.h"
+#include "core/scene/bsdf/bsdfs.h"
+
+namespace fogbow {
+
+/// Distribution of microfacet normals around +z, with Smith's masking (Walter et al. 2007) and the
+/// exact sampling of the normals that are visible from a direction.
+class MicrofacetDistribution {
+ public:
+  /// Roughness below 1e-4 is taken as 1e-4, as in Mitsuba 3. Throws std::domain_error if negative
+  /// or not finite.
+  explicit MicrofacetDistribution(const RoughnessSettings& roughness);
+
+  /// Density of the microfacets' area by normal: ∫ D(h) h_z dσ(h) = 1.
+  double D(const Vec3& h) const;
+  /// Share of the microfacets that face `w` and are not masked by others; `w` on either side.
+  double G1(const Vec3& w) const;
+
+  /// Of the normals seen from w (w_z > 0): D(h) G1(w) (w·h)₊ / w_z, in solid angle.
+  double pdf_visible(const Vec3& w, const Vec3& h) const {
+    return D(h) * G1(w) * std::fmax(dot(w, h), 0.0) / w.z;
+  }
+  Vec3 sample_visible(const Vec3& w, const Vec2& u) const;
+  /// The u with sample_visible(w, u) = h.
+  Vec2 invert_visible(const Vec3& w, const Vec3& h) const;
+
+ private:
+  /// w in the space where the surface has unit roughness.
+  Vec3 stretch(const Vec3& w) const { return normalize(Vec3(alpha_.x * w.x, alpha_.y * w.y, w.z)); }
+
+  MicrofacetKind kind_;
+  Vec2 alpha_;
+  double normalization_;  ///< 1/(π α_u α_v)
+};
+
+}  // namespace fogbow

@@ -1,0 +1,137 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/math/warp.h"
+#include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/bsdf/fresnel.h"
+#include "core/scene/bsdf/microfacet.h"
+#include "core/scene/bsdf/reflecting.h"
+
+namespace fogbow {
+namespace {
+
+/// Refraction at rough interfaces (Walter et al. 2007).
+class RoughDielectric final : public Bsdf {
+ public:
+  RoughDielectric(const RoughnessSettings& roughness, double eta, const RGB& reflectance,
+                  const RGB& transmittance)
+      : facets_(roughness),
+        eta_(eta),
+        reflectance_(checked_reflectance(reflectance)),
+        transmittance_(checked_reflectance(transmittance)),
+        mean_reflectance_(mean(reflectance)),
+        mean_transmittance_(mean(transmittance)) {
+    if (!(eta > 0 && std::isfinite(eta) && eta != 1))
+      throw std::domain_error(
+          "the relative index of refraction of a rough dielectric must be positive, finite and "
+          "not 1");
+  }
+
+  bool has_smooth() const override { return true; }
+
+  RGB f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const override;
+  double pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const override;
+  std::optional<BsdfSample> sample(const SurfacePoint& x, const Vec3& from,
+                                   const Vec3& u) const override;
+  std::optional<Vec3> invert(const SurfacePoint& x, const Vec3& from, const Vec3& to, bool dirac,
+                             const Vec3& auxiliary) const override;
+
+  double eta() const override { return eta_; }
+  RGB albedo(const SurfacePoint&) const override { return glm::max(reflectance_, transmittance_); }
+  const char* name() const override { return "roughdielectric"; }
+
+ private:
+  /// The microfacet that scatters a into b.
+  struct Facet {
+    Vec3 h;               ///< its normal, on the exterior side
+    double cos_a, cos_b;  ///< |a·h|, |b·h|
+    double length2;       ///< |n_a a + n_b b|², of refraction
+    bool reflects;
+    double F;
+  };
+
+  double n(const Vec3& w) const { return w.z > 0 ? 1.0 : eta_; }
+  double relative_eta(const Vec3& w) const { return w.z > 0 ? eta_ : 1 / eta_; }
+  std::optional<Facet> facet(const Vec3& a, const Vec3& b) const;
+  double reflection_probability(double F) const {
+    return fogbow::reflection_probability(F, mean_reflectance_, mean_transmittance_);
+  }
+  double event_probability(const Facet& m) const {
+    if (m.reflects) return reflection_probability(m.F);
+    return (1 - m.F) * mean_transmittance_ > 0 ? 1 - reflection_probability(m.F) : 0.0;
+  }
+
+  MicrofacetDistribution facets_;
+  double eta_;
+  RGB reflectance_, transmittance_;
+  double mean_reflectance_, mean_transmittance_;
+};
+
+std::optional<RoughDielectric::Facet> RoughDielectric::facet(const Vec3& a, const Vec3& b) const {
+  if (a.z == 0 || b.z == 0) return std::nullopt;
+  const bool reflects = a.z * b.z > 0;
+  const Vec3 sum = reflects ? a + b : n(a) * a + n(b) * b;
+  const double length2 = dot(sum, sum);
+  if (!(length2 > 0) || sum.z == 0) return std::nullopt;
+  const Vec3 h = sum * (std::copysign(1.0, sum.z) / std::sqrt(length2));
+  // Each direction must see the facet from the side that it sees the surface from.
+  const double cos_a = a.z > 0 ? dot(a, h) : -dot(a, h), cos_b = b.z > 0 ? dot(b, h) : -dot(b, h);
+  if (!(cos_a > 0 && cos_b > 0)) return std::nullopt;
+  return Facet{h, cos_a, cos_b, length2, reflects, fresnel_dielectric(cos_a, relative_eta(a)).F};
+}
+
+RGB RoughDielectric::f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const {
+  const auto m = facet(w_light, w_eye);
+  if (!m) return RGB(0);
+  const double DG =
+      facets_.D(m->h) * facets_.G1(w_light) * facets_.G1(w_eye) / std::fabs(w_light.z * w_eye.z);
+  if (m->reflects) return reflectance_ * (m->F * DG * 0.25);  // eq. 20
+  return transmittance_ *
+         ((1 - m->F) * DG * m->cos_a * m->cos_b * sqr(n(w_eye)) / m->length2);  // eq. 21
+}
+
+double RoughDielectric::pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const {
+  const auto m = facet(from, to);
+  if (!m) return 0;
+  const double visible = facets_.D(m->h) * facets_.G1(from) / std::fabs(from.z);  // over cos_a
+  const double jacobian = m->reflects ? 0.25 : m->cos_a * m->cos_b * sqr(n(to)) / m->length2;
+  return event_probability(*m) * visible * jacobian;
+}
+
+std::optional<BsdfSample> RoughDielectric::sample(const SurfacePoint& x, const Vec3& from,
+                                                  const Vec3& u) const {
+  if (from.z == 0) return std::nullopt;
+  // From below, facets look as from above through a reflection at the origin.
+  const double side = from.z > 0 ? 1.0 : -1.0;
+  const Vec3 h = side * facets_.sample_visible(side * from, {u.y, u.z});
+  const double cos_from = dot(from, h);
+  const double eta = relative_eta(from);
+  const auto [F, cos_t] = fresnel_dielectric(cos_from, eta);
+  const bool reflects = u.x < reflection_probability(F);
+  const Vec3 to = reflects ? 2 * cos_from * h - from : (cos_from / eta - cos_t) * h - from / eta;
+  if ((to.z * from.z > 0) != reflects) return std::nullopt;
+  const double pdf = pdf_sigma(x, from, to);
+  if (!(pdf > 0)) return std::nullopt;
+  return BsdfSample{to, false, pdf};
+}
+
+std::optional<Vec3> RoughDielectric::invert(const SurfacePoint&, const Vec3& from, const Vec3& to,
+                                            bool dirac, const Vec3& auxiliary) const {
+  const auto m = dirac ? std::nullopt : facet(from, to);
+  if (!m || !(event_probability(*m) > 0)) return std::nullopt;
+  const double side = from.z > 0 ? 1.0 : -1.0;
+  const Vec2 u = facets_.invert_visible(side * from, m->h);
+  const double P = reflection_probability(m->F);
+  const double lobe = m->reflects ? warp::invert_interval(0, P, auxiliary.x)
+                                  : warp::invert_interval(P, 1, auxiliary.x);
+  return Vec3(lobe, u.x, u.y);
+}
+
+}  // namespace
+
+std::shared_ptr<const Bsdf> make_rough_dielectric(const RoughnessSettings& roughness, double eta,
+                                                  const RGB& specular_reflectance,
+                                                  const RGB& specular_transmittance) {
+  return std::make_shared<RoughDielectric>(roughness, eta, specular_reflectance,
+                                           specular_transmittance);
+}
+
+}  // namespace fogbow
