@@ -37,7 +37,8 @@ struct PrimitiveHit {
 /// How Embree is told of a shape.
 enum class PrimitiveKind { Triangles, Quads, Analytic };
 
-/// Indexed triangles or quads in single precision, as Embree wants them.
+/// Indexed triangles or quads in single precision, as Embree wants them; four readable bytes follow
+/// the last vertex.
 struct PrimitiveBuffers {
   std::span<const glm::vec3> vertices;
   std::span<const std::uint32_t> indices;  ///< 3 or 4 per primitive
@@ -62,7 +63,8 @@ class Shape {
   virtual Bounds primitive_bounds(std::uint32_t primitive) const = 0;
 
   /// Nearest intersection with t in (ray.t_min, ray.t_max), in double precision.
-  /// Planar primitives accept barycentrics a rounding error outside, so that what Embree found is not lost.
+  /// What double rounding cannot tell from an end of the ray is no hit; planar primitives accept
+  /// barycentrics a double rounding error outside, so that shared edges have no gap.
   /// `leaving`: the ray starts on this very primitive, at a point with a root at t = 0, which is not a hit.
   virtual std::optional<PrimitiveHit> intersect(std::uint32_t primitive, const Ray& ray,
                                                 bool leaving) const = 0;

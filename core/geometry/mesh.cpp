@@ -1,0 +1,205 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <limits>
+#include <stdexcept>
+
+#include "core/geometry/planar.h"
+#include "core/geometry/shapes.h"
+#include "core/math/discrete_distribution.h"
+#include "core/math/warp.h"
+#include "core/util/log.h"
+
+namespace fogbow {
+
+namespace {
+
+/// Sine of a corner below which a triangle's normal is made of rounding.
+constexpr double kDegenerate = 64 * 0x1p-53;
+
+void validate(const TriangleMeshData& data) {
+  const std::size_t n = data.positions.size();
+  constexpr std::size_t kMost = std::numeric_limits<std::uint32_t>::max() / 3;
+  if (n > kMost || data.triangles.size() > kMost)
+    throw std::domain_error("mesh has more vertices or triangles than 32 bits can name");
+  if (!data.normals.empty() && data.normals.size() != n)
+    throw std::domain_error("mesh has " + std::to_string(data.normals.size()) + " normals for " +
+                            std::to_string(n) + " vertices");
+  if (!data.uvs.empty() && data.uvs.size() != n)
+    throw std::domain_error("mesh has " + std::to_string(data.uvs.size()) +
+                            " texture coordinates for " + std::to_string(n) + " vertices");
+  for (std::size_t i = 0; i < n; ++i) {
+    if (!is_finite(data.positions[i]))
+      throw std::domain_error("mesh vertex " + std::to_string(i) + " is not finite");
+    if (!data.normals.empty() && !is_finite(data.normals[i]))
+      throw std::domain_error("mesh normal " + std::to_string(i) + " is not finite");
+    if (!data.uvs.empty() && !is_finite(Vec3(data.uvs[i], 0)))
+      throw std::domain_error("mesh texture coordinate " + std::to_string(i) + " is not finite");
+  }
+  for (std::size_t i = 0; i < data.triangles.size(); ++i)
+    for (const std::uint32_t v : data.triangles[i])
+      if (v >= n)
+        throw std::domain_error("mesh triangle " + std::to_string(i) + " names vertex " +
+                                std::to_string(v) + " of " + std::to_string(n));
+}
+
+struct Corners {
+  Vec3 p, e1, e2;
+};
+
+Corners corners(const TriangleMeshData& data, const std::array<std::uint32_t, 3>& triangle) {
+  const Vec3& p = data.positions[triangle[0]];
+  return {p, data.positions[triangle[1]] - p, data.positions[triangle[2]] - p};
+}
+
+bool degenerate(const Corners& c) {
+  const double edge = std::max({length(c.e1), length(c.e2), length(c.e2 - c.e1)});
+  return !(length(cross(c.e1, c.e2)) > kDegenerate * edge * edge);
+}
+
+class Mesh final : public Shape {
+ public:
+  explicit Mesh(TriangleMeshData data) : data_(std::move(data)) {
+    validate(data_);
+    drop_degenerate();
+    for (Vec3& n : data_.normals)
+      if (length(n) > 0) n = normalize(n);
+    std::vector<double> areas;
+    areas.reserve(data_.triangles.size());
+    for (const auto& triangle : data_.triangles) {
+      const Corners c = corners(data_, triangle);
+      areas.push_back(0.5 * length(cross(c.e1, c.e2)));
+      for (const std::uint32_t v : triangle) bounds_.extend(data_.positions[v]);
+    }
+    area_ = DiscreteDistribution(areas);
+    floats_.reserve(data_.positions.size() + 1);
+    for (const Vec3& p : data_.positions) floats_.emplace_back(p);
+    floats_.emplace_back(0.0f);  // padding, see PrimitiveBuffers
+  }
+
+  PrimitiveKind primitive_kind() const override { return PrimitiveKind::Triangles; }
+  std::uint32_t primitive_count() const override {
+    return static_cast<std::uint32_t>(data_.triangles.size());
+  }
+  PrimitiveBuffers buffers() const override {
+    return {{floats_.data(), floats_.size() - 1},
+            {data_.triangles.data()->data(), 3 * data_.triangles.size()}};
+  }
+  Bounds bounds() const override { return bounds_; }
+  Bounds primitive_bounds(std::uint32_t primitive) const override {
+    Bounds b;
+    for (const std::uint32_t v : data_.triangles[primitive]) b.extend(data_.positions[v]);
+    return b;
+  }
+  bool planar() const override { return true; }
+
+  std::optional<PrimitiveHit> intersect(std::uint32_t primitive, const Ray& ray,
+                                        bool leaving) const override {
+    if (leaving) return std::nullopt;
+    const Corners c = corners(data_, data_.triangles[primitive]);
+    return detail::intersect_planar<detail::Outline::Triangle>(c.p, c.e1, c.e2, ray);
+  }
+
+  SurfacePoint surface_point(std::uint32_t primitive, const Vec2& local) const override {
+    const auto& triangle = data_.triangles[primitive];
+    const Corners c = corners(data_, triangle);
+    SurfacePoint x;
+    x.position = c.p + local.x * c.e1 + local.y * c.e2;
+    x.n_g = normalize(cross(c.e1, c.e2));
+    x.shading = Frame(data_.normals.empty() ? x.n_g : shading_normal(triangle, local, x.n_g).n);
+    x.uv = data_.uvs.empty() ? local : interpolate(data_.uvs, triangle, local);
+    x.local = local;
+    x.primitive = primitive;
+    return x;
+  }
+
+  SurfaceDerivatives derivatives(const SurfacePoint& x) const override {
+    const auto& triangle = data_.triangles[x.primitive];
+    const Corners c = corners(data_, triangle);
+    SurfaceDerivatives d{c.e1, c.e2, Vec3(0), Vec3(0)};
+    if (data_.normals.empty()) return d;
+    const ShadingNormal s = shading_normal(triangle, x.local, x.n_g);
+    if (s.scale == 0) return d;
+    // d(N/|N|) = (dN − n (n·dN))/|N|, with N linear in the barycentrics.
+    const Vec3 du = s.scale * (data_.normals[triangle[1]] - data_.normals[triangle[0]]);
+    const Vec3 dv = s.scale * (data_.normals[triangle[2]] - data_.normals[triangle[0]]);
+    d.dn_du = du - s.n * dot(s.n, du);
+    d.dn_dv = dv - s.n * dot(s.n, dv);
+    return d;
+  }
+
+  double area() const override { return area_.total(); }
+  SurfacePoint sample(const Vec2& u) const override {
+    const std::size_t i = area_.sample(u.x);
+    const double within = (u.x - area_.invert(i, 0)) / area_.probability(i);
+    return surface_point(static_cast<std::uint32_t>(i),
+                         warp::sample_triangle({warp::clamp_unit(within), u.y}));
+  }
+  Vec2 invert(const SurfacePoint& x) const override {
+    const Vec2 u = warp::invert_triangle(x.local);
+    return {area_.invert(x.primitive, u.x), u.y};
+  }
+
+  Tessellation tessellate() const override { return {data_.positions, data_.triangles}; }
+
+ private:
+  /// The unit normal, and its ratio to the interpolated one; 0 where that says nothing.
+  struct ShadingNormal {
+    Vec3 n;
+    double scale;
+  };
+
+  void drop_degenerate() {
+    const std::size_t dropped = std::erase_if(
+        data_.triangles, [this](const auto& t) { return degenerate(corners(data_, t)); });
+    if (dropped > 0)
+      log_warning("mesh: dropped " + std::to_string(dropped) + " triangles without area");
+    if (data_.triangles.empty()) throw std::domain_error("mesh has no triangle with an area");
+  }
+
+  template <class T>
+  static T interpolate(const std::vector<T>& values, const std::array<std::uint32_t, 3>& triangle,
+                       const Vec2& b) {
+    const T& origin = values[triangle[0]];
+    return origin + b.x * (values[triangle[1]] - origin) + b.y * (values[triangle[2]] - origin);
+  }
+
+  /// Turned to the side of n_g where the mesh's normals point behind its surface.
+  ShadingNormal shading_normal(const std::array<std::uint32_t, 3>& triangle, const Vec2& b,
+                               const Vec3& n_g) const {
+    const Vec3 N = interpolate(data_.normals, triangle, b);
+    const double norm = length(N), side = dot(N, n_g);
+    if (!(std::fabs(side) > kDegenerate * norm)) return {n_g, 0};
+    const double scale = std::copysign(1 / norm, side);
+    return {scale * N, scale};
+  }
+
+  TriangleMeshData data_;
+  std::vector<glm::vec3> floats_;
+  DiscreteDistribution area_;
+  Bounds bounds_;
+};
+
+}  // namespace
+
+std::shared_ptr<const Shape> make_mesh(TriangleMeshData data) {
+  return std::make_shared<Mesh>(std::move(data));
+}
+
+std::vector<Vec3> vertex_normals(const TriangleMeshData& data) {
+  std::vector<Vec3> normals(data.positions.size(), Vec3(0));
+  for (const auto& triangle : data.triangles) {
+    const Corners c = corners(data, triangle);
+    if (degenerate(c)) continue;
+    const Vec3 n = normalize(cross(c.e1, c.e2));
+    for (int i = 0; i < 3; ++i) {
+      const Vec3& p = data.positions[triangle[i]];
+      const Vec3 a = data.positions[triangle[(i + 1) % 3]] - p;
+      const Vec3 b = data.positions[triangle[(i + 2) % 3]] - p;
+      normals[triangle[i]] += std::atan2(length(cross(a, b)), dot(a, b)) * n;
+    }
+  }
+  for (Vec3& n : normals)
+    if (length(n) > 0) n = normalize(n);
+  return normals;
+}
+
+}  // namespace fogbow
