@@ -15,12 +15,12 @@
 namespace fogbow {
 
 struct RenderProgress {
-  double fraction = 0;             ///< of the target, in [0, 1]
+  double fraction = 0;  ///< of the target, in [0, 1]
   double seconds = 0;
-  double samples_per_pixel = 0;    ///< mutations or samples so far
+  double samples_per_pixel = 0;  ///< mutations or samples so far
   double samples_per_second = 0;
-  double b = 0, b_stderr = 0;      ///< mean luminance and its standard error
-  std::string stage;               ///< "bootstrap", "render"
+  double b = 0, b_stderr = 0;  ///< mean luminance and its standard error
+  std::string stage;           ///< "bootstrap", "render"
 };
 
 struct RenderOptions {
@@ -31,14 +31,16 @@ struct RenderOptions {
   std::optional<double> samples_per_pixel;  ///< mutations or samples; neither: 64 a pixel
   int threads = 0;                          ///< 0: all
   std::uint64_t seed = 0;
-  double picture_interval = 0;              ///< seconds between calls of on_picture; 0: never
+  double picture_interval = 0;  ///< seconds between calls of on_picture; 0: never
   std::function<void(const RenderProgress&)> on_progress;
   std::function<void(const Image&)> on_picture;
   const std::atomic<bool>* stop = nullptr;  ///< set from elsewhere to end at the next round
-  const std::atomic<bool>* save_now = nullptr;  ///< asks for one on_picture at the next round; the caller resets it
+  const std::atomic<bool>* save_now =
+      nullptr;  ///< asks for one on_picture at the next round; the caller resets it
 };
 
-/// b_k^c: mean luminance carried by the paths of one length (vertices), with standard error between groups.
+/// b_k^c: mean luminance carried by the paths of one length (vertices), with standard error between
+/// groups.
 struct ClassShare {
   int k = 0;
   double value = 0, standard_error = 0;
@@ -54,7 +56,7 @@ struct RenderResult {
   Image image;  ///< R G B Error.R Error.G Error.B
   std::string integrator;
   double b = 0, b_stderr = 0;
-  std::uint64_t samples = 0;   ///< paths or mutations, without the bootstrap
+  std::uint64_t samples = 0;  ///< paths or mutations, without the bootstrap
   int chains = 0, groups = 0;
   double seconds = 0, cpu_seconds = 0;
   std::uint64_t rays = 0;
@@ -64,10 +66,12 @@ struct RenderResult {
   std::vector<ClassShare> lengths;
   std::vector<MutationReport> mutations;
   std::map<std::string, double> diagnostics;  ///< R-hat, ESS, …
-  std::vector<std::string> notes;             ///< e.g. that the scene asked for another integrator, or properties without effect
+  std::vector<std::string>
+      notes;  ///< e.g. that the scene asked for another integrator, or properties without effect
 };
 
-/// Throws Error: NoLight if nothing that was tried carries light, Usage on unknown integrators or properties, Numerical on film overflow.
+/// Throws Error: NoLight if nothing that was tried carries light, Usage on unknown integrators or
+/// properties, Numerical on film overflow.
 RenderResult render(const Scene& scene, const RenderOptions& options);
 
 /// One proposal with all its factors, as text: `--replay seed:chain:step`.

@@ -14,7 +14,8 @@ class Transform {
   static Transform translate(const Vec3& d);
   static Transform scale(const Vec3& s);
   static Transform rotate(const Vec3& axis, double degrees);
-  /// Camera-to-world of a viewer at `origin` that looks along +z at `target` (Mitsuba's convention: +x is to the left of the picture).
+  /// Camera-to-world of a viewer at `origin` that looks along +z at `target` (Mitsuba's convention:
+  /// +x is to the left of the picture).
   static Transform look_at(const Vec3& origin, const Vec3& target, const Vec3& up);
 
   const Mat4& matrix() const { return m_; }
@@ -25,7 +26,8 @@ class Transform {
   /// Normals transform by the inverse transpose; not normalized.
   Vec3 normal(const Vec3& n) const { return glm::transpose(Mat3(inverse_)) * n; }
   bool flips_orientation() const;
-  /// Uniform scale factor if the linear part is a similarity (relative tolerance 1e-6), else nothing (NaN).
+  /// Uniform scale factor if the linear part is a similarity (relative tolerance 1e-6), else
+  /// nothing (NaN).
   double similarity_scale() const;
 
   /// (a * b)(p) = a(b(p)).

@@ -42,8 +42,6 @@ inline bool is_finite(const Vec3& v) {
 }
 
 /// Relative luminance of linear Rec. 709 primaries (Mitsuba's weights).
-inline double luminance(const RGB& c) {
-  return 0.212671 * c.x + 0.715160 * c.y + 0.072169 * c.z;
-}
+inline double luminance(const RGB& c) { return 0.212671 * c.x + 0.715160 * c.y + 0.072169 * c.z; }
 
 }  // namespace fogbow

@@ -1,11 +1,53 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/path/transport.h"
 
+#include <atomic>
+#include <mutex>
+#include <set>
+
 namespace fogbow {
 
 namespace {
 
-thread_local std::uint64_t ray_count = 0;
+/// Counts without contention: one counter a thread, summed when asked for.
+class RayCounter {
+ public:
+  RayCounter() {
+    const std::lock_guard lock(mutex());
+    counters().insert(this);
+  }
+  ~RayCounter() {
+    const std::lock_guard lock(mutex());
+    counters().erase(this);
+    retired() += count_;
+  }
+  void operator++() {
+    count_.store(count_.load(std::memory_order_relaxed) + 1, std::memory_order_relaxed);
+  }
+  static std::uint64_t total() {
+    const std::lock_guard lock(mutex());
+    std::uint64_t sum = retired();
+    for (const RayCounter* counter : counters()) sum += counter->count_;
+    return sum;
+  }
+
+ private:
+  static std::mutex& mutex() {
+    static std::mutex m;
+    return m;
+  }
+  static std::set<const RayCounter*>& counters() {
+    static std::set<const RayCounter*> all;
+    return all;
+  }
+  static std::uint64_t& retired() {
+    static std::uint64_t n = 0;
+    return n;
+  }
+  std::atomic<std::uint64_t> count_{0};
+};
+
+thread_local RayCounter ray_count;
 
 /// Multiplies an edge's transmittance by that of one medium over [t0, t1].
 void attenuate(Edge& edge, const Medium* medium, const Ray& ray, double t0, double t1) {
@@ -85,7 +127,7 @@ bool unobstructed(const Scene& scene, Ray ray, const Vertex& start, PrimitiveId 
 
 }  // namespace
 
-std::uint64_t rays_traced() { return ray_count; }
+std::uint64_t rays_traced() { return RayCounter::total(); }
 
 ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u, Vertex& next,
                     Edge& edge, double t_min, double t_max) {

@@ -40,7 +40,7 @@ std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b
 std::optional<Vertex> medium_vertex_at(const Scene& scene, const Vertex& x, const Vec3& w, double t,
                                        double t_min, Edge& edge);
 
-/// Rays traced by this thread so far.
+/// Rays traced by all threads so far.
 std::uint64_t rays_traced();
 
 }  // namespace fogbow

@@ -20,11 +20,12 @@ ThreadLimit::~ThreadLimit() { delete static_cast<Control*>(control_); }
 
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& task) {
   // Tasks are long and uneven (a whole chain, a tile): no grouping.
-  oneapi::tbb::parallel_for(oneapi::tbb::blocked_range<std::int64_t>(0, count, 1),
-                            [&](const auto& range) {
-                              for (auto i = range.begin(); i != range.end(); ++i) task(i);
-                            },
-                            oneapi::tbb::simple_partitioner());
+  oneapi::tbb::parallel_for(
+      oneapi::tbb::blocked_range<std::int64_t>(0, count, 1),
+      [&](const auto& range) {
+        for (auto i = range.begin(); i != range.end(); ++i) task(i);
+      },
+      oneapi::tbb::simple_partitioner());
 }
 
 int hardware_threads() { return oneapi::tbb::info::default_concurrency(); }

@@ -17,7 +17,8 @@ class ThreadLimit {
   void* control_;
 };
 
-/// Calls task(i) once for every i in [0, count), in any order, from several threads; rethrows the first exception.
+/// Calls task(i) once for every i in [0, count), in any order, from several threads; rethrows the
+/// first exception.
 void parallel_for(std::int64_t count, const std::function<void(std::int64_t)>& task);
 
 int hardware_threads();

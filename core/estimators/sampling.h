@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <vector>
+
+#include "core/estimators/estimator.h"
+#include "core/image/film.h"
+#include "core/util/rng.h"
+
+namespace fogbow {
+
+/// Σ luminance of contributions by path length k and group.
+using LengthTally = std::array<std::vector<double>, Film::kGroups>;
+
+/// Renders with independent samples, one a pixel and round; film and tally do not depend on the
+/// number of threads.
+class IndependentSampling {
+ public:
+  /// `unit_exponent`: of the film. With `only_length` > 0 the film takes the paths of so many
+  /// vertices alone.
+  IndependentSampling(const Estimator& estimator, const FilmSettings& settings, std::uint64_t seed,
+                      int unit_exponent, int only_length = 0);
+
+  void run_round();
+
+  const Film& film() const { return film_; }
+  std::uint64_t samples() const { return samples_; }
+  std::uint64_t refused() const { return refused_ + film_.refused(); }
+  const LengthTally& tally() const { return tally_; }
+  /// Mean luminance and the standard error between groups.
+  Image develop() const;
+  int width() const { return width_; }
+  int height() const { return height_; }
+
+ private:
+  struct Row;
+  void run_row(int row, Row& result);
+
+  const Estimator& estimator_;
+  Film film_;
+  std::uint64_t seed_;
+  int only_length_;
+  int width_, height_;
+  std::uint64_t round_ = 0, samples_ = 0, refused_ = 0;
+  LengthTally tally_;
+};
+
+/// Width and height of the part of the film that is rendered.
+std::pair<int, int> rendered_size(const FilmSettings& settings);
+
+/// e with 2^e > the mean luminance that `estimator` finds in some samples; throws Error(NoLight) if
+/// it finds none.
+int luminance_exponent(const Estimator& estimator, std::uint64_t seed);
+
+/// Uniform numbers from a generator.
+class RandomStream final : public SampleStream {
+ public:
+  explicit RandomStream(Rng& rng) : rng_(rng) {}
+  double next() override { return rng_.uniform(); }
+
+ private:
+  Rng& rng_;
+};
+
+}  // namespace fogbow

@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/chain_ensemble.h"
+
+namespace fogbow {
+
+void ChainRecord::serialize(std::ostream& out) const {
+  write_binary(out, independent_f_star);
+  write_binary(out, independent_squares);
+  write_binary(out, independent_steps);
+  write_binary_vector(out, length_share);
+}
+
+ChainRecord ChainRecord::deserialize(std::istream& in) {
+  ChainRecord record;
+  record.independent_f_star = read_binary<double>(in);
+  record.independent_squares = read_binary<double>(in);
+  record.independent_steps = read_binary<std::uint64_t>(in);
+  record.length_share = read_binary_vector<double>(in, 1 << 20);
+  return record;
+}
+
+}  // namespace fogbow

@@ -1,0 +1,118 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <functional>
+#include <optional>
+#include <vector>
+
+#include "core/image/film.h"
+#include "core/math/random.h"
+#include "core/util/parallel.h"
+#include "mlt/chain.h"
+#include "mlt/normalization.h"
+
+namespace fogbow {
+
+/// What one chain has seen besides its splats.
+struct ChainRecord {
+  double independent_f_star = 0, independent_squares = 0;  ///< Σ f*, Σ f*² over independent steps
+  std::uint64_t independent_steps = 0;
+  std::vector<double> length_share;  ///< expected-value time share of paths of k vertices, by k
+
+  void serialize(std::ostream& out) const;
+  static ChainRecord deserialize(std::istream& in);
+};
+
+/// Film::kGroups independent groups of chains of one State; every chain is a function of (seed,
+/// index) alone.
+template <class State>
+class ChainEnsemble {
+ public:
+  using Start = std::function<State(int group, std::uint64_t chain)>;
+
+  ChainEnsemble(const MutationTable<State>& table, std::uint64_t seed, int chains_per_group,
+                const Start& start)
+      : table_(table),
+        seed_(seed),
+        chains_(Film::kGroups * chains_per_group),
+        records_(chains_.size()) {
+    parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
+      chains_[i].emplace(start(group_of(i), static_cast<std::uint64_t>(i)));
+      chains_[i]->prepare(table_.size());
+    });
+  }
+
+  std::size_t size() const { return chains_.size(); }
+  static int group_of(std::size_t chain) { return static_cast<int>(chain % Film::kGroups); }
+
+  /// Every chain goes on until it has made `steps(chain)` steps in all.
+  void run(const std::function<std::uint64_t(std::size_t)>& steps, Film& film) {
+    parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
+      while (chains_[i]->steps() < steps(i)) step(i, film);
+    });
+  }
+
+  /// Splats what the current states have gathered.
+  void finish(Film& film) {
+    parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
+      Rng rng(seed_, RngDomain::Film, static_cast<std::uint64_t>(i), chains_[i]->steps());
+      chains_[i]->leave(splatter(i, rng, film));
+    });
+  }
+
+  StepInfo step(std::size_t i, Film& film) {
+    Chain<State>& chain = *chains_[i];
+    Rng rng(seed_, RngDomain::Chain, i, chain.steps());
+    Rng offsets(seed_, RngDomain::Film, i, chain.steps());
+    const StepInfo info = chain.step(table_, rng, splatter(i, offsets, film));
+    if (table_[info.mutation]->independent()) {
+      const double f_star = info.proposal.rejection ? 0 : info.f_star_y;
+      records_[i].independent_f_star += f_star;
+      records_[i].independent_squares += f_star * f_star;
+      ++records_[i].independent_steps;
+    }
+    return info;
+  }
+
+  const Chain<State>& chain(std::size_t i) const { return *chains_[i]; }
+  const ChainRecord& record(std::size_t i) const { return records_[i]; }
+
+  std::uint64_t total_steps() const {
+    std::uint64_t total = 0;
+    for (const auto& chain : chains_) total += chain->steps();
+    return total;
+  }
+
+  void serialize(std::ostream& out) const {
+    for (std::size_t i = 0; i < size(); ++i) {
+      chains_[i]->serialize(out);
+      records_[i].serialize(out);
+    }
+  }
+  /// Into an ensemble made with the same arguments.
+  void deserialize(std::istream& in) {
+    for (std::size_t i = 0; i < size(); ++i) {
+      chains_[i].emplace(Chain<State>::deserialize(in));
+      records_[i] = ChainRecord::deserialize(in);
+    }
+  }
+
+ private:
+  auto splatter(std::size_t i, Rng& offsets, Film& film) {
+    return [this, i, &offsets, &film](const State& x, double weight) {
+      std::vector<double>& share = records_[i].length_share;
+      for (const Contribution& c : x.contributions()) {
+        const RGB value = c.value * (weight / x.f_star());
+        film.splat(c.raster, value, group_of(i), uniform2(offsets));
+        if (share.size() <= static_cast<std::size_t>(c.k)) share.resize(c.k + 1);
+        share[c.k] += luminance(value);
+      }
+    };
+  }
+
+  const MutationTable<State>& table_;
+  std::uint64_t seed_;
+  std::vector<std::optional<Chain<State>>> chains_;
+  std::vector<ChainRecord> records_;
+};
+
+}  // namespace fogbow

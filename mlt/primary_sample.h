@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <iosfwd>
+#include <vector>
+
+#include "core/estimators/estimator.h"
+#include "core/util/rng.h"
+
+namespace fogbow {
+
+/// A point of the unit hypercube that an estimator turns into contributions [Kelemen2002].
+/// Coordinates that the estimator did not read are not stored: they are uniform whatever the rest
+/// is.
+class PrimarySample {
+ public:
+  /// Luminance of all contributions together.
+  double f_star() const { return f_star_; }
+  const std::vector<Contribution>& contributions() const { return workspace_.contributions; }
+  const std::vector<double>& light() const { return light_; }
+  const std::vector<double>& eye() const { return eye_; }
+
+  /// Fresh uniform coordinates, evaluated.
+  void draw(const Estimator& estimator, Rng& rng);
+  /// Coordinates perturbed from those of `x` by the symmetric kernel of Kelemen et al., evaluated.
+  void perturb(const Estimator& estimator, const PrimarySample& x, Rng& rng);
+
+  /// Coordinates and the contributions they had.
+  void serialize(std::ostream& out) const;
+  static PrimarySample deserialize(std::istream& in);
+
+ private:
+  void evaluate(const Estimator& estimator, SampleStream& light, SampleStream& eye);
+
+  std::vector<double> light_, eye_;
+  Workspace workspace_;
+  double f_star_ = 0;
+};
+
+/// Offsets between 1/1024 and 1/64 with density ∝ 1/|offset|, wrapped around [Kelemen2002].
+double perturb_primary_sample(double value, double u);
+
+}  // namespace fogbow
