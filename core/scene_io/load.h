@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <array>
 #include <map>
+#include <optional>
 #include <string>
+#include <utility>
 #include <vector>
 
 #include "core/scene/media_registry.h"
@@ -13,11 +16,12 @@ struct LoadOptions {
   std::map<std::string, std::string> definitions;  ///< -D name=value
   std::optional<std::pair<int, int>> size;         ///< overrides the film's width and height
   std::optional<std::array<int, 4>> crop;          ///< x, y, width, height
-  bool strict = false;          ///< warnings become errors
-  bool sandbox_paths = false;   ///< files must lie inside the scene's folder
+  bool strict = false;                             ///< warnings become errors
+  bool sandbox_paths = false;                      ///< files must lie inside the scene's folder
 };
 
-/// Reads a Mitsuba scene; throws Error(Scene or InputOutput) with file:line:column. Every property that has no effect is warned of through log() and in `warnings`.
+/// Reads a Mitsuba scene; throws Error(Scene or InputOutput) with file:line:column. Every property
+/// that has no effect is warned of through log() and in `warnings`.
 SceneDescription load_mitsuba_xml(const std::string& path, const MediaRegistry& media,
                                   const LoadOptions& options, std::vector<std::string>& warnings);
 

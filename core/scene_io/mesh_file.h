@@ -1,0 +1,22 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <string_view>
+
+#include "core/geometry/shapes.h"
+#include "core/util/error.h"
+
+namespace fogbow {
+
+// Meshes in the coordinates of their files, polygons cut into fans. `normals` is empty if the file
+// has none; a vertex without one among others that have gets the zero vector. `name` is for
+// messages. Throw Error(Scene) at the line (or byte) of whatever is malformed, missing, not finite
+// or out of range; nothing is allocated for counts that the length of the text cannot hold.
+
+/// Stanford PLY 1.0, ascii or binary in either byte order; unknown elements and properties are
+/// skipped.
+TriangleMeshData parse_ply(std::string_view bytes, const std::string& name);
+/// Wavefront OBJ: v, vt, vn and f; everything else is ignored. One vertex per distinct (v, vt, vn).
+TriangleMeshData parse_obj(std::string_view text, const std::string& name);
+
+}  // namespace fogbow

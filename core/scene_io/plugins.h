@@ -1,0 +1,41 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <functional>
+#include <map>
+#include <memory>
+#include <string>
+
+#include "core/geometry/shape.h"
+#include "core/image/film.h"
+#include "core/scene/emitter.h"
+#include "core/scene/properties.h"
+#include "core/scene/sensor.h"
+#include "core/scene_io/content_hash.h"
+#include "core/scene_io/files.h"
+
+namespace fogbow {
+
+// One table a kind, from the name of a plugin to its constructor; defaults are those of
+// Mitsuba 3.9.1. A new plugin is one line there.
+
+template <class Constructor>
+using PluginTable = std::map<std::string, std::function<Constructor>>;
+
+/// What shapes need besides their properties: files, whose bytes go into the hash.
+struct ShapeContext {
+  const FileResolver& files;
+  ContentHash& hash;
+};
+
+const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins();
+const PluginTable<std::shared_ptr<const Bsdf>(Properties&)>& bsdf_plugins();
+/// Emitters that stand alone; "area" needs a shape.
+const PluginTable<std::shared_ptr<Emitter>(Properties&)>& emitter_plugins();
+const PluginTable<std::shared_ptr<Emitter>(Properties&, std::shared_ptr<const Shape>)>&
+surface_emitter_plugins();
+const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)>&
+sensor_plugins();
+const PluginTable<FilmSettings(Properties&)>& film_plugins();
+const PluginTable<std::shared_ptr<const ReconstructionFilter>(Properties&)>& filter_plugins();
+
+}  // namespace fogbow
