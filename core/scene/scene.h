@@ -88,15 +88,28 @@ class Scene {
   const std::vector<std::string>& warnings() const { return warnings_; }
 
  private:
-  void check_boundaries(bool strict);
-  void collect_emitters();
+  struct BoundaryReport;
+  void check_description() const;
+  void measure();
+  void place_anchors();
+  /// What is seen from p in the direction of an anchor.
+  struct Sighting;
+  std::optional<Sighting> look(const Vec3& p, const Vec3& target, PrimitiveId on) const;
+  BoundaryReport check_boundaries();
+  void check_camera(const BoundaryReport& report);
+  void check_point_lights(const BoundaryReport& report);
+  void compare(const BoundaryReport& report, const Vec3& p, const std::string& what);
+  void collect_emitters(const BoundaryReport& report);
+  void drop_infinite_emitters_in_fog();
+  void add_volume_emitters(const BoundaryReport& report);
+  Bounds emission_bounds(const Medium* medium, const BoundaryReport& report) const;
+  void warn(std::string message);
 
   SceneDescription description_;
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;       ///< of the medium boundaries alone
   std::vector<std::uint32_t> boundary_shapes_;  ///< ids in accel_ of boundary_accel_'s shapes
-  struct Anchor;                                ///< a point on a boundary to look at
-  std::vector<Anchor> anchors_;
+  std::vector<Vec3> anchors_;                   ///< points on boundaries to look at
   std::vector<std::shared_ptr<Emitter>> emitters_;
   std::vector<int> emitter_of_surface_;
   std::vector<std::pair<const Medium*, int>> emitter_of_medium_;
