@@ -7,13 +7,23 @@
 
 namespace fogbow::cli {
 
+namespace {
+
+/// Warnings are what `check` is asked for: they go to standard output.
+void print_finding(LogLevel level, std::string_view message) {
+  if (level != LogLevel::Warning) return print_message(level, message);
+  std::printf("warning: %.*s\n", static_cast<int>(message.size()), message.data());
+}
+
+}  // namespace
+
 ExitCode run_check(const SceneArguments& arguments) {
-  const LoadedScene loaded = load_scene(
-      arguments, [](const std::string& warning) { std::printf("warning: %s\n", warning.c_str()); });
+  const MessageLog log(print_finding);
+  load_scene(arguments);
   std::printf("%s: %s\n", arguments.path.c_str(),
-              loaded.warnings.empty() ? "nothing to complain about"
-                                      : count_of(loaded.warnings.size(), "warning").c_str());
-  if (arguments.strict) require_no_warnings(arguments.path, loaded.warnings);
+              log.warnings().empty() ? "nothing to complain about"
+                                     : count_of(log.warnings().size(), "warning").c_str());
+  require_no_warnings(arguments, log);
   return ExitCode::Done;
 }
 

@@ -10,6 +10,8 @@ namespace fogbow::cli {
 
 namespace {
 
+LogLevel printed_level = LogLevel::Debug;
+
 const char* level_name(LogLevel level) {
   switch (level) {
     case LogLevel::Debug: return "debug";
@@ -23,9 +25,12 @@ const char* level_name(LogLevel level) {
 }  // namespace
 
 void print_message(LogLevel level, std::string_view message) {
+  if (level < printed_level) return;
   const std::string line = std::string(level_name(level)) + ": " + std::string(message) + "\n";
   std::fputs(line.c_str(), stderr);  // one call, so that lines of several threads stay whole
 }
+
+void set_printed_level(LogLevel level) { printed_level = level; }
 
 std::string format(const char* pattern, ...) {
   std::va_list arguments, again;
@@ -50,7 +55,7 @@ std::string with_si_prefix(double value) {
     value /= 1000;
     ++i;
   }
-  return format("%.3g %s", value, prefixes[i]);
+  return format("%.3g%s", value, prefixes[i]);
 }
 
 std::string byte_size(double bytes) {

@@ -8,15 +8,17 @@
 
 namespace fogbow::cli {
 
-/// One line on standard error: "warning: …". The program's log sink.
+/// One line on standard error: "warning: …".
 void print_message(LogLevel level, std::string_view message);
+/// From here on print_message drops what is below `level`.
+void set_printed_level(LogLevel level);
 
 /// printf into a string.
 [[gnu::format(printf, 1, 2)]] std::string format(const char* pattern, ...);
 
 /// "1 warning", "3 warnings".
 std::string count_of(std::uint64_t n, const std::string& noun);
-/// 1234567 → "1.23 M".
+/// 1234567 → "1.23M".
 std::string with_si_prefix(double value);
 /// Binary: "12.3 MiB".
 std::string byte_size(double bytes);

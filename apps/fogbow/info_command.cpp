@@ -110,8 +110,10 @@ void print_memory(const std::map<std::string, std::size_t>& parts) {
 
 ExitCode run_info(const InfoArguments& arguments) {
   const ThreadLimit limit(arguments.integrator.threads);
-  const LoadedScene loaded = load_scene(arguments.scene);
-  const Scene& scene = *loaded.scene;
+  const MessageLog log(print_message);
+  const auto loaded = load_scene(arguments.scene);
+  require_no_warnings(arguments.scene, log);
+  const Scene& scene = *loaded;
   RenderOptions options;
   options.integrator = arguments.integrator.name;
   options.overrides = arguments.integrator.overrides;
@@ -128,7 +130,7 @@ ExitCode run_info(const InfoArguments& arguments) {
   print_camera(scene);
   print_integrator(scene, arguments.integrator.name);
   print_memory(memory);
-  print_row("warnings", loaded.warnings.empty() ? "none" : std::to_string(loaded.warnings.size()));
+  print_row("warnings", log.warnings().empty() ? "none" : std::to_string(log.warnings().size()));
   return ExitCode::Done;
 }
 

@@ -94,9 +94,8 @@ void add_render(CLI::App& program, RenderArguments& arguments, std::function<Exi
       ->type_name("OUT.exr");
   add_integrator_arguments(app, arguments.integrator);
   add_render_stop(app, arguments);
-  app.add_option("--seed", arguments.seed, "Seed of all random numbers")
-      ->type_name("S")
-      ->capture_default_str();
+  add_parsed(app, "--seed", "S", "Seed of all random numbers (default 0)",
+             [&](const std::string& text) { arguments.seed = parse_seed(text); });
   app.add_option("--json", arguments.json, "Where the report goes; default: beside the picture")
       ->type_name("FILE");
   add_parsed(app, "--picture-interval", "TIME",
@@ -146,7 +145,7 @@ int fail(ErrorKind kind, const std::string& message) {
 
 int run_program(int argc, char** argv) {
   CLI::App app("Fogbow: Metropolis light transport for surfaces and participating media", "fogbow");
-  app.require_subcommand(1);
+  app.require_subcommand(0, 1);
   app.set_version_flag("--version", program_version());
   app.footer(
       "Exit codes: 0 done, 2 usage, 3 scene, 4 input or output, 5 no light found, 6 numerical,\n"
@@ -174,6 +173,10 @@ int run_program(int argc, char** argv) {
     return app.exit(error) == 0 ? static_cast<int>(ExitCode::Done)
                                 : static_cast<int>(ExitCode::Usage);
   }
+  if (!run) {
+    std::fputs(app.help().c_str(), stderr);
+    return static_cast<int>(ExitCode::Usage);
+  }
   const ExitCode code = run();
   if (std::fflush(stdout) != 0)
     return fail(ErrorKind::InputOutput, "standard output cannot be written");
@@ -181,7 +184,6 @@ int run_program(int argc, char** argv) {
 }
 
 int guarded_main(int argc, char** argv) {
-  set_log_sink(print_message);
   try {
     return run_program(argc, argv);
   } catch (const Error& error) {

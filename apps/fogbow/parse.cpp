@@ -91,6 +91,12 @@ double parse_number(const std::string& text, bool positive) {
   return *value;
 }
 
+std::uint64_t parse_seed(const std::string& text) {
+  const auto value = number<std::uint64_t>(text);
+  if (!value) refuse(text, "a whole number from 0 to 2^64 - 1");
+  return *value;
+}
+
 std::pair<int, int> parse_size(const std::string& text) {
   const auto values = numbers<int, 2>(text, 'x');
   if (!values || (*values)[0] < 1 || (*values)[1] < 1)

@@ -13,6 +13,8 @@ namespace fogbow::cli {
 double parse_duration(const std::string& text);
 /// A finite number; `positive`: above zero.
 double parse_number(const std::string& text, bool positive);
+/// A whole number below 2^64.
+std::uint64_t parse_seed(const std::string& text);
 /// "WIDTHxHEIGHT".
 std::pair<int, int> parse_size(const std::string& text);
 /// "x,y,width,height" in pixels.

@@ -6,6 +6,8 @@
 
 #include <algorithm>
 #include <cstdio>
+#include <cstdlib>
+#include <cstring>
 
 #include "apps/fogbow/console.h"
 
@@ -39,18 +41,21 @@ std::string cut(const std::string& text, int columns) {
 
 }  // namespace
 
-ProgressDisplay::ProgressDisplay(Style style, std::string unit)
-    : style_(style), unit_(std::move(unit)) {
-  set_log_sink([this](LogLevel level, std::string_view text) { message(level, text); });
+ProgressDisplay::ProgressDisplay(Style style, std::string unit, MessageLog& log)
+    : style_(style), unit_(std::move(unit)), log_(log) {
+  log_.set_printer([this](LogLevel level, std::string_view message) { print(level, message); });
 }
 
 ProgressDisplay::~ProgressDisplay() {
   erase_bar();
-  set_log_sink(print_message);
+  log_.set_printer(print_message);
 }
 
 ProgressDisplay::Style ProgressDisplay::default_style() {
-  return ::isatty(STDERR_FILENO) ? Style::Bar : Style::Lines;
+  const char* terminal = std::getenv("TERM");
+  const bool can_erase =
+      ::isatty(STDERR_FILENO) && !(terminal && std::strcmp(terminal, "dumb") == 0);
+  return can_erase ? Style::Bar : Style::Lines;
 }
 
 std::string ProgressDisplay::status(const RenderProgress& progress) const {
@@ -60,7 +65,7 @@ std::string ProgressDisplay::status(const RenderProgress& progress) const {
     text += "  ETA " + duration(progress.seconds * (1 / progress.fraction - 1));
   if (progress.b > 0) text += "  b " + with_error(progress.b, progress.b_stderr);
   if (progress.samples_per_second > 0)
-    text += "  " + with_si_prefix(progress.samples_per_second) + unit_ + "/s";
+    text += "  " + with_si_prefix(progress.samples_per_second) + " " + unit_ + "/s";
   return text;
 }
 
@@ -103,11 +108,11 @@ void ProgressDisplay::update(const RenderProgress& progress) {
                     std::clamp(gap, kShortestLineGap, kLongestLineGap));
 }
 
-void ProgressDisplay::message(LogLevel level, std::string_view text) {
+void ProgressDisplay::print(LogLevel level, std::string_view message) {
   const std::lock_guard lock(mutex_);
   const std::string bar = shown_;
   erase_bar();
-  print_message(level, text);
+  print_message(level, message);
   shown_ = bar;
   if (!shown_.empty()) std::fputs(shown_.c_str(), stderr);
 }

@@ -5,7 +5,7 @@
 #include <string>
 #include <string_view>
 
-#include "core/util/log.h"
+#include "apps/fogbow/message_log.h"
 #include "mlt/render.h"
 
 namespace fogbow::cli {
@@ -17,7 +17,7 @@ class ProgressDisplay {
   enum class Style { None, Bar, Lines };
 
   /// `unit`: what is counted, "mutations" or "samples".
-  ProgressDisplay(Style style, std::string unit);
+  ProgressDisplay(Style style, std::string unit, MessageLog& log);
   ~ProgressDisplay();
   ProgressDisplay(const ProgressDisplay&) = delete;
   ProgressDisplay& operator=(const ProgressDisplay&) = delete;
@@ -26,12 +26,11 @@ class ProgressDisplay {
   static Style default_style();
 
   void update(const RenderProgress& progress);
-  /// A message on a line of its own.
-  void message(LogLevel level, std::string_view text);
 
  private:
   using Clock = std::chrono::steady_clock;
 
+  void print(LogLevel level, std::string_view message);
   std::string status(const RenderProgress& progress) const;
   std::string bar_line(const RenderProgress& progress) const;
   void erase_bar();
@@ -39,6 +38,7 @@ class ProgressDisplay {
   std::mutex mutex_;  ///< messages come from any thread
   Style style_;
   std::string unit_;
+  MessageLog& log_;
   std::string stage_;
   Clock::time_point start_ = Clock::now(), next_ = start_;
   std::string shown_;  ///< the bar on the screen

@@ -92,68 +92,66 @@ ExitCode exit_code_of(const RenderResult& result) {
   return result.groups_disagree ? ExitCode::GroupsDisagree : ExitCode::Done;
 }
 
-std::vector<std::string> late_warnings(const RenderResult& result) {
-  std::vector<std::string> warnings;
+void warn_of(const RenderResult& result) {
   if (result.non_finite > 0)
-    warnings.push_back(count_of(result.non_finite, "non-finite contribution") + " refused");
+    log_warning(count_of(result.non_finite, "non-finite contribution") + " refused");
   if (result.groups_disagree)
-    warnings.push_back(
-        "the groups of chains disagree by more than their errors allow: render longer");
+    log_warning("the groups of chains disagree by more than their errors allow: render longer");
   if (result.interrupted)
-    warnings.push_back(
+    log_warning(
         "interrupted: the picture so far is written (going on from it is not possible yet)");
-  return warnings;
 }
 
 RenderResult render_with_display(const RenderArguments& arguments, const Scene& scene,
-                                 const OutputFiles& files, SignalScope& signals) {
+                                 const OutputFiles& files, SignalScope& signals, MessageLog& log) {
   RenderOptions options = render_options(arguments);
   require_memory(scene, options);
   const bool file_decides = options.integrator == "file";
   ProgressDisplay display(
       arguments.verbosity == Verbosity::Quiet ? ProgressDisplay::Style::None
                                               : ProgressDisplay::default_style(),
-      sample_unit(file_decides ? scene.description().integrator.type : options.integrator));
+      sample_unit(file_decides ? scene.description().integrator.type : options.integrator), log);
   attach_callbacks(options, arguments, scene, files, display);
   signals.arm();
   return render(scene, options);
 }
 
-ExitCode replay_step(const RenderArguments& arguments) {
-  const LoadedScene loaded = load_scene(arguments.scene);
+ExitCode replay_step(const RenderArguments& arguments, const Scene& scene) {
   const auto [seed, chain, step] = *arguments.replay;
-  const std::string text = replay(*loaded.scene, render_options(arguments), seed, chain, step);
+  const std::string text = replay(scene, render_options(arguments), seed, chain, step);
   std::fputs(text.c_str(), stdout);
   if (!text.ends_with('\n')) std::fputs("\n", stdout);
   return ExitCode::Done;
+}
+
+ExitCode render_to_files(const RenderArguments& arguments, const Scene& scene,
+                         const OutputFiles& files, SignalScope& signals, MessageLog& log) {
+  RenderResult result = render_with_display(arguments, scene, files, signals, log);
+  for (const std::string& note : result.notes) log_info(note);
+  warn_of(result);
+  const RenderRecord record{arguments, scene, result, log.warnings(), files, exit_code_of(result)};
+  describe_picture(result.image, record);
+  write_pictures(result.image, files, arguments.exposure);
+  write_text_file(files.json, report_json(record));
+  if (arguments.verbosity != Verbosity::Quiet) std::fputs(report_text(record).c_str(), stdout);
+  return record.exit_code;
 }
 
 }  // namespace
 
 ExitCode run_render(const RenderArguments& arguments) {
   const ThreadLimit limit(arguments.integrator.threads);
-  if (arguments.verbosity == Verbosity::Quiet) set_log_level(LogLevel::Error);
+  if (arguments.verbosity == Verbosity::Quiet) set_printed_level(LogLevel::Error);
   if (arguments.verbosity == Verbosity::Verbose) set_log_level(LogLevel::Debug);
-  if (arguments.replay) return replay_step(arguments);
-
+  MessageLog log(print_message);
   SignalScope signals;
-  const OutputFiles files = output_files(arguments);
-  const LoadedScene loaded = load_scene(arguments.scene);
-  RenderResult result = render_with_display(arguments, *loaded.scene, files, signals);
-
-  for (const std::string& note : result.notes) log_info(note);
-  std::vector<std::string> warnings = loaded.warnings;
-  for (const std::string& warning : late_warnings(result)) {
-    log_warning(warning);
-    warnings.push_back(warning);
-  }
-  const RenderRecord record{arguments, *loaded.scene, result,
-                            warnings,  files,         exit_code_of(result)};
-  describe_picture(result.image, record);
-  write_pictures(result.image, files, arguments.exposure);
-  write_text_file(files.json, report_json(record));
-  if (arguments.verbosity != Verbosity::Quiet) std::fputs(report_text(record).c_str(), stdout);
-  return record.exit_code;
+  // What cannot be written is told before hours of work, not after.
+  const std::optional<OutputFiles> files =
+      arguments.replay ? std::nullopt : std::optional(output_files(arguments));
+  const auto scene = load_scene(arguments.scene);
+  require_no_warnings(arguments.scene, log);
+  return files ? render_to_files(arguments, *scene, *files, signals, log)
+               : replay_step(arguments, *scene);
 }
 
 }  // namespace fogbow::cli

@@ -16,7 +16,7 @@ double per_second(double count, double seconds) { return seconds > 0 ? count / s
 
 std::string mutation_line(const MutationReport& mutation) {
   const auto proposed = static_cast<double>(mutation.proposed);
-  std::string line = format("  %-16s %sproposed, %.2f%% accepted", mutation.name.c_str(),
+  std::string line = format("  %-16s %s proposed, %.2f%% accepted", mutation.name.c_str(),
                             with_si_prefix(proposed).c_str(),
                             percent(static_cast<double>(mutation.accepted), proposed));
   const char* separator = "; refused: ";
@@ -84,11 +84,12 @@ std::string report_text(const RenderRecord& record) {
   if (!result.lengths.empty()) text += lengths_table(result);
   if (!result.mutations.empty()) text += "mutations:\n";
   for (const MutationReport& mutation : result.mutations) text += mutation_line(mutation);
-  text += format(
-      "%s%s (%.4g a pixel) in %s (%.1f CPU-s): %s%s/s, %srays/s\n", with_si_prefix(samples).c_str(),
-      unit.c_str(), pixels > 0 ? samples / pixels : 0.0, duration(result.seconds).c_str(),
-      result.cpu_seconds, with_si_prefix(per_second(samples, result.seconds)).c_str(), unit.c_str(),
-      with_si_prefix(per_second(static_cast<double>(result.rays), result.seconds)).c_str());
+  text +=
+      format("%s %s (%.4g a pixel) in %s (%.1f CPU-s): %s %s/s, %s rays/s\n",
+             with_si_prefix(samples).c_str(), unit.c_str(), pixels > 0 ? samples / pixels : 0.0,
+             duration(result.seconds).c_str(), result.cpu_seconds,
+             with_si_prefix(per_second(samples, result.seconds)).c_str(), unit.c_str(),
+             with_si_prefix(per_second(static_cast<double>(result.rays), result.seconds)).c_str());
   text += "wrote " + record.files.exr + ", " + record.files.png + ", " + record.files.json + "\n";
   return text;
 }

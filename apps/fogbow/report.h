@@ -17,7 +17,7 @@ struct RenderRecord {
   const RenderArguments& arguments;
   const Scene& scene;
   const RenderResult& result;
-  const std::vector<std::string>& warnings;  ///< of loading and rendering
+  const std::vector<std::string>& warnings;  ///< of the whole run
   const OutputFiles& files;
   ExitCode exit_code;
 };

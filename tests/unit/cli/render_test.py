@@ -1,0 +1,105 @@
+# SPDX-License-Identifier: GPL-3.0-or-later
+"""The program as it is installed, with the real renderer: that flags reach it and its answers come out."""
+
+import json
+import signal
+import unittest
+
+from support import PROGRAM, UNUSED_PROPERTY, CliTest, exr_metadata, read_exr, read_png, scene_text
+
+MESH_ELSEWHERE = '<shape type="obj"><string name="filename" value="../elsewhere.obj"/><ref id="grey"/></shape>'
+
+
+class Render(CliTest):
+    def run_cli(self, *arguments, program=PROGRAM, **options):
+        return super().run_cli(*arguments, program=program, **options)
+
+    def report(self, name="run.json"):
+        return json.loads((self.folder / name).read_text(encoding="utf-8"))
+
+    def test_every_integrator(self):
+        brightness = {}
+        for name in ("path", "light", "bdpt", "pssmlt"):
+            self.expect(0, "render", "scene.xml", "--integrator", name, "--spp", "64", "-t", "1")
+            report = self.report()
+            self.assertEqual(report["integrator"], name)
+            self.assertGreater(report["b"]["value"], 0)
+            self.assertGreater(report["samples"], 0)
+            self.assertGreater(report["speed"]["rays"], 0)
+            self.assertEqual(report["non_finite"], 0)
+            self.assertEqual(exr_metadata(self.folder / "run.exr")["integrator"], name)
+            brightness[name] = (report["b"]["value"], report["b"]["standard_error"])
+            green = read_exr(self.folder / "run.exr")["G"]
+            self.assertGreater(sum(map(sum, green)), 0)
+            self.assertTrue(any(pixel != (0, 0, 0) for row in read_png(self.folder / "run.png") for pixel in row))
+        # Five standard errors: that the four are of one picture, not how well they do.
+        value, error = brightness["path"]
+        for other, other_error in brightness.values():
+            self.assertLess(abs(other - value), 5 * (error**2 + other_error**2)**0.5 + 1e-12, brightness)
+
+    def test_default_sampler_and_the_file_s_choice(self):
+        result = self.expect(0, "render", "scene.xml", "--spp", "4")
+        self.assertEqual(self.report()["integrator"], "pssmlt")
+        self.assertIn("volpath", result.stderr.decode())
+        self.expect(0, "render", "scene.xml", "--spp", "4", "--integrator", "file")
+        self.assertEqual(self.report()["integrator"], "path")
+
+    def test_errors(self):
+        self.expect(2, "render", "scene.xml", "--integrator", "radiosity", message="radiosity")
+        self.expect(2, "render", "scene.xml", "--set", "integrator.no_such_property=1", message="no_such_property")
+        self.write("dark.xml", scene_text(emitter=""))
+        self.expect(5, "render", "dark.xml", "--spp", "4")
+        self.write("apart.xml", scene_text(more=MESH_ELSEWHERE))
+        self.expect(3, "render", "apart.xml", "--sandbox-paths", message="elsewhere.obj")
+        self.expect(3, "render", "scene.xml", "--crop", "10,0,10,4", message="crop")
+        self.assertEqual(self.files(), ["apart.xml", "dark.xml", "scene.xml"])
+
+    def test_size_crop_and_definitions(self):
+        self.expect(0, "render", "scene.xml", "-Dres=20", "--crop", "3,2,8,5", "--spp", "4")
+        header = exr_metadata(self.folder / "run.exr")
+        self.assertEqual((header["dataWindow"], header["displayWindow"]), ((3, 2, 10, 6), (0, 0, 19, 11)))
+        self.expect(0, "render", "scene.xml", "-D", "res=20", "--size", "6x4", "--spp", "4")
+        self.assertEqual(exr_metadata(self.folder / "run.exr")["displayWindow"], (0, 0, 5, 3))
+
+    def test_properties_reach_the_integrator(self):
+        lengths = {}
+        for depth in (2, 4):
+            self.expect(0, "render", "scene.xml", "--integrator", "bdpt", "--spp", "16", "--set",
+                        f"integrator.max_depth={depth}")
+            lengths[depth] = {share["k"] for share in self.report()["b_k"] if share["value"] > 0}
+        self.assertEqual(max(lengths[2]) + 2, max(lengths[4]), lengths)
+
+    def test_time_is_kept(self):
+        self.expect(0, "render", "scene.xml", "--time", "1s", "-t", "2")
+        self.assertLess(abs(self.report()["speed"]["seconds"] - 1), 1)
+
+    def test_interrupt_saves(self):
+        process = self.start_cli("render", "scene.xml", "--time", "10m", "-t", "2", program=PROGRAM)
+        while b"render" not in process.stderr.readline():
+            self.assertIsNone(process.poll())
+        process.send_signal(signal.SIGINT)
+        process.communicate(timeout=60)
+        self.assertEqual(process.returncode, 75)
+        self.assertTrue(self.report()["interrupted"])
+        self.assertGreater(sum(map(sum, read_exr(self.folder / "run.exr")["G"])), 0)
+
+    def test_replay(self):
+        first = self.expect(0, "render", "scene.xml", "--replay", "1:0:5").stdout
+        self.assertGreater(len(first), 40)
+        self.assertEqual(self.expect(0, "render", "scene.xml", "--replay", "1:0:5").stdout, first)
+        self.assertNotEqual(self.expect(0, "render", "scene.xml", "--replay", "1:0:6").stdout, first)
+
+    def test_info(self):
+        text = self.expect(0, "info", "scene.xml").stdout.decode()
+        for part in ("2 surfaces", "2 quads", "2 twosided", "emitters    1 area", "media       none", "16x12, box"):
+            self.assertIn(part, text)
+        self.assertRegex(text, r"memory +[\d.]+ [KM]iB to render")
+
+    def test_check(self):
+        self.write("odd.xml", scene_text(more=UNUSED_PROPERTY))
+        self.expect(0, "check", "scene.xml", "--strict")
+        self.expect(3, "check", "odd.xml", "--strict")
+
+
+if __name__ == "__main__":
+    unittest.main()
