@@ -184,25 +184,26 @@ struct FreeFlight {
   }
 };
 
-/// The exponential law cut to (0, T); uniform where σ_t T vanishes. T may be infinite if σ_t > 0.
+/// The exponential law cut to (0, T). T may be infinite if σ_t > 0.
 struct TruncatedExponential {
   double sigma_t, T;
 
   double sample(double u) const {
-    const double depth = sigma_t * T;
-    if (!(depth > 0)) return u * T;
-    return std::fmin(-std::log1p(u * std::expm1(-depth)) / sigma_t, T);
+    if (is_uniform()) return u * T;
+    return std::fmin(-std::log1p(u * std::expm1(-sigma_t * T)) / sigma_t, std::nextafter(T, 0.0));
   }
   double pdf(double t) const {
-    const double depth = sigma_t * T;
-    if (!(depth > 0)) return 1 / T;
-    return -sigma_t * std::exp(-sigma_t * t) / std::expm1(-depth);
+    if (is_uniform()) return 1 / T;
+    return -sigma_t * std::exp(-sigma_t * t) / std::expm1(-sigma_t * T);
   }
   double invert(double t) const {
-    const double depth = sigma_t * T;
-    if (!(depth > 0)) return clamp_unit(t / T);
-    return clamp_unit(std::expm1(-sigma_t * t) / std::expm1(-depth));
+    if (is_uniform()) return clamp_unit(t / T);
+    return clamp_unit(std::expm1(-sigma_t * t) / std::expm1(-sigma_t * T));
   }
+
+ private:
+  /// To rounding: the density varies by a factor e^{−σ_t T}.
+  bool is_uniform() const { return !(sigma_t * T > 1e-17); }
 };
 
 /// Density ∝ 1/distance² to a point (Kulla and Fajardo 2012) on (t0, t1) of a ray; t1 may be
@@ -215,16 +216,8 @@ struct Equiangular {
   double angle() const { return angle_between(t0, t1); }
   double sample(double u) const {
     const double total = angle();
-    const double D = distance, a = t0 - foot, b = t1 - foot;
-    if (u < 0.5) {
-      const double phi = u * total;
-      const double c = std::cos(phi), s = std::sin(phi);
-      return std::fmin(t0 + (D * D + a * a) * s / (D * c - a * s), t1);
-    }
-    const double phi = (1 - u) * total;
-    const double c = std::cos(phi), s = std::sin(phi);
-    if (std::isinf(t1)) return foot + D * c / s;
-    return std::fmax(t1 - (D * D + b * b) * s / (D * c + b * s), t0);
+    const double t = u < 0.5 ? from_start(u * total) : from_end(u * total, (1 - u) * total);
+    return std::fmin(std::fmax(t, t0), t1);
   }
   double pdf(double t) const {
     return distance / (angle() * (distance * distance + sqr(t - foot)));
@@ -235,6 +228,24 @@ struct Equiangular {
   }
 
  private:
+  /// Where the angle from t0 is phi. Each formula subtracts only what the result is as large as.
+  double from_start(double phi) const {
+    const double D = distance, a = t0 - foot;
+    const double c = std::cos(phi), s = std::sin(phi);
+    return t0 + (D * D + a * a) * s / (D * c - a * s);
+  }
+  /// Where the angles from t0 and to t1 are phi and psi.
+  double from_end(double phi, double psi) const {
+    const double D = distance, a = t0 - foot, b = t1 - foot;
+    const double c = std::cos(psi), s = std::sin(psi);
+    const bool endless = std::isinf(t1);
+    if (a >= 0) {  // the foot lies before the segment
+      const double inverse_cos = endless ? 1 / s : std::sqrt(D * D + b * b) / (D * c + b * s);
+      return t0 + std::sqrt(D * D + a * a) * std::sin(phi) * inverse_cos;
+    }
+    if (b <= 0) return t1 - (D * D + b * b) * s / (D * c + b * s);  // behind it
+    return foot + (endless ? D * c / s : D * (b * c - D * s) / (D * c + b * s));
+  }
   double angle_between(double from, double to) const {
     if (std::isinf(to)) return std::atan2(distance, from - foot);
     return std::atan2(distance * (to - from), distance * distance + (to - foot) * (from - foot));
