@@ -188,9 +188,9 @@ TEST(Warp, FreeFlightWithWall) {
 
 TEST(Warp, Equiangular) {
   const warp::Equiangular laws[] = {
-      {0.7, 0.4, 0, 2},     {-3, 0.1, 0, 1},      {5, 1e-3, 0, 4.9},   {0.5, 1e-7, 0, 1},
-      {1e6, 1e-3, 0, 1e6},  {2, 30, 0.1, 5},      {0.7, 0.4, 0, 1e12}, {-1e5, 1e-4, 0, 1e-3},
-      {1e5, 1e-4, 0, 1e-3}, {-1e-3, 1e-6, 0, 1e9}};
+      {0.7, 0.4, 0, 2},    {-3, 0.1, 0, 1},       {5, 1e-3, 0, 4.9},
+      {0.5, 1e-7, 0, 1},   {1e6, 1e-3, 0, 1e6},   {2, 30, 0.1, 5},
+      {0.7, 0.4, 0, 1e12}, {-1e5, 1e-4, 0, 1e-3}, {1e5, 1e-4, 0, 1e-3}};
   int number = 0;
   for (const auto& law : laws) {
     testing::Chart chart = testing::interval_chart(law.t0, law.t1);
