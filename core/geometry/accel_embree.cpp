@@ -309,7 +309,7 @@ struct Accel::Impl {
     double start = ray.t_min;
     // From afar: begin near the scene, where single precision can tell things apart.
     if (length_squared(ray(start) - center) > sqr(4 * radius))
-      start = std::fmax(start, dot(center - ray.o, ray.d) - 2 * radius);
+      start = std::fmin(std::fmax(start, dot(center - ray.o, ray.d) - 2 * radius), ray.t_max);
     query.base = start - shift;
     query.edge = kEdge * magnitude;
     const Vec3 o = ray(query.base) + aside;
