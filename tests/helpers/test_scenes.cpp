@@ -1,0 +1,232 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/helpers/test_scenes.h"
+
+#include <stdexcept>
+
+#include "core/geometry/shapes.h"
+#include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/emitters.h"
+#include "core/scene/sensors.h"
+#include "media/media.h"
+
+namespace fogbow::testing {
+
+namespace {
+
+using MediumPtr = std::shared_ptr<const Medium>;
+using BsdfPtr = std::shared_ptr<const Bsdf>;
+
+constexpr int kSize = 16;
+
+/// Collects the parts of a description.
+class Builder {
+ public:
+  Builder() {
+    d_.film = {kSize, kSize, 0, 0, 0, 0, make_box_filter()};
+    camera(Vec3(0, 0.3, 3), Vec3(0, 0, 0), 45);
+  }
+
+  Builder& camera(const Vec3& origin, const Vec3& target, double fov, double aperture = 0) {
+    PerspectiveSettings s;
+    s.to_world = Transform::look_at(origin, target, Vec3(0, 1, 0));
+    s.fov_x_degrees = fov;
+    s.width = s.height = kSize;
+    d_.sensor = aperture > 0 ? make_thinlens_sensor(s, aperture, length(target - origin))
+                             : make_perspective_sensor(s);
+    return *this;
+  }
+  Builder& camera_medium(MediumPtr m) {
+    d_.sensor_medium = std::move(m);
+    d_.sensor_medium_declared = true;
+    return *this;
+  }
+  Surface& add(std::shared_ptr<const Shape> shape, BsdfPtr bsdf) {
+    Surface s;
+    s.shape = std::move(shape);
+    s.bsdf = std::move(bsdf);
+    s.id = "surface " + std::to_string(d_.surfaces.size());
+    return d_.surfaces.emplace_back(std::move(s));
+  }
+  Builder& bounds(std::shared_ptr<const Shape> shape, BsdfPtr bsdf, MediumPtr interior,
+                  MediumPtr exterior) {
+    Surface& s = add(std::move(shape), std::move(bsdf));
+    s.medium_boundary = true;
+    s.interior = std::move(interior);
+    s.exterior = std::move(exterior);
+    return *this;
+  }
+  Builder& light(std::shared_ptr<const Shape> shape, const RGB& radiance) {
+    Surface& s = add(shape, make_diffuse(RGB(0)));
+    s.emitter = make_area_emitter(std::move(shape), radiance);
+    return *this;
+  }
+  Builder& emitter(std::shared_ptr<Emitter> e) {
+    d_.emitters.push_back(std::move(e));
+    return *this;
+  }
+  Builder& floor(BsdfPtr bsdf) {
+    add(make_rectangle(Transform::translate(Vec3(0, -1, 0)) *
+                       Transform::rotate(Vec3(1, 0, 0), -90) * Transform::scale(Vec3(2.5))),
+        std::move(bsdf));
+    return *this;
+  }
+  Builder& ceiling_light(double half_size, const RGB& radiance) {
+    return light(
+        make_rectangle(Transform::translate(Vec3(0.3, 1.4, 0.2)) *
+                       Transform::rotate(Vec3(1, 0, 0), 90) * Transform::scale(Vec3(half_size))),
+        radiance);
+  }
+  SceneDescription done() { return std::move(d_); }
+
+ private:
+  SceneDescription d_;
+};
+
+BsdfPtr gray() { return make_twosided(make_diffuse(RGB(0.6, 0.5, 0.4))); }
+
+MediumPtr fog(const RGB& sigma_t, const RGB& albedo, double g = 0, const RGB& emission = RGB(0)) {
+  return make_homogeneous_medium(
+      sigma_t, albedo, g == 0 ? make_isotropic_phase() : make_henyey_greenstein(g), emission);
+}
+
+std::shared_ptr<const Shape> sphere(const Vec3& center, double radius) {
+  return make_sphere(center, radius);
+}
+
+/// A wavy height field with smooth normals over [−1.5, 1.5]², facing up.
+std::shared_ptr<const Shape> water_surface() {
+  constexpr int n = 40;
+  TriangleMeshData mesh;
+  for (int j = 0; j <= n; ++j)
+    for (int i = 0; i <= n; ++i) {
+      const double x = 3.0 * i / n - 1.5, z = 3.0 * j / n - 1.5;
+      mesh.positions.emplace_back(x, 0.05 * std::sin(4 * x) * std::cos(3 * z), z);
+    }
+  for (std::uint32_t j = 0; j < n; ++j)
+    for (std::uint32_t i = 0; i < n; ++i) {
+      const std::uint32_t a = j * (n + 1) + i, b = a + 1, c = a + n + 1, d = c + 1;
+      mesh.triangles.push_back({a, c, b});
+      mesh.triangles.push_back({b, c, d});
+    }
+  mesh.normals = vertex_normals(mesh);
+  return make_mesh(std::move(mesh));
+}
+
+SceneDescription surfaces() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.4, RGB(8, 7, 6));
+  b.add(sphere(Vec3(-0.5, -0.5, 0), 0.5),
+        make_rough_conductor({MicrofacetKind::Ggx, 0.3, 0.3}, RGB(0.2, 0.9, 1.1),
+                             RGB(3.9, 2.4, 2.2)));
+  b.add(make_cube(Transform::translate(Vec3(0.6, -0.6, 0.2)) * Transform::scale(Vec3(0.4))),
+        gray());
+  return b.done();
+}
+
+SceneDescription floor_fog() {
+  Builder b;
+  b.camera_medium(fog(RGB(0.4), RGB(0.9))).floor(gray()).ceiling_light(0.3, RGB(10));
+  return b.done();
+}
+
+SceneDescription glass_sphere_fog() {
+  Builder b;
+  const auto m = fog(RGB(0.3), RGB(0.9));
+  b.camera_medium(m).floor(gray()).ceiling_light(0.3, RGB(10));
+  b.bounds(sphere(Vec3(0, -0.2, 0), 0.5), make_dielectric(1.5), nullptr, m);
+  return b.done();
+}
+
+SceneDescription fog_in_glass() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.4, RGB(10));
+  b.bounds(sphere(Vec3(0, -0.2, 0), 0.6), make_dielectric(1.4), fog(RGB(2, 1.5, 1), RGB(0.8), 0.4),
+           nullptr);
+  return b.done();
+}
+
+SceneDescription nested_media() {
+  Builder b;
+  const auto outer = fog(RGB(0.5, 0.8, 1.1), RGB(0.9, 0.8, 0.7), 0.3);
+  const auto inner = fog(RGB(3, 2, 1), RGB(0.5, 0.7, 0.9), -0.2);
+  b.floor(gray()).ceiling_light(0.4, RGB(10));
+  b.bounds(make_cube(Transform::scale(Vec3(0.9))), make_null(), outer, nullptr);
+  b.bounds(sphere(Vec3(0.1, 0, 0), 0.5), make_null(), inner, outer);
+  return b.done();
+}
+
+SceneDescription mirror_fog() {
+  Builder b;
+  b.camera_medium(fog(RGB(0.3), RGB(0.8), 0.5)).floor(gray());
+  b.add(
+      make_rectangle(Transform::translate(Vec3(-1.2, 0, 0)) * Transform::rotate(Vec3(0, 1, 0), 70)),
+      make_twosided(make_conductor(RGB(0), RGB(1), RGB(0.9, 0.8, 0.7))));
+  b.emitter(make_point_emitter(Vec3(0.6, 0.9, 0.4), RGB(5)));
+  return b.done();
+}
+
+SceneDescription water() {
+  Builder b;
+  b.camera(Vec3(0, 2, 2.2), Vec3(0, -0.3, 0), 45);
+  b.floor(gray()).ceiling_light(0.3, RGB(20));
+  // A basin: no way leads around the edge of the open water surface.
+  for (int side = 0; side < 4; ++side)
+    b.add(make_rectangle(Transform::rotate(Vec3(0, 1, 0), 90.0 * side) *
+                         Transform::translate(Vec3(0, -0.4, -1.4)) *
+                         Transform::scale(Vec3(1.4, 0.7, 1))),
+          gray());
+  b.bounds(water_surface(), make_dielectric(1.33), fog(RGB(0.9, 0.6, 0.5), RGB(0.4, 0.7, 0.8)),
+           nullptr);
+  return b.done();
+}
+
+SceneDescription flame() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.2, RGB(4));
+  b.bounds(make_cube(Transform::scale(Vec3(0.5))), make_null(),
+           fog(RGB(1.5, 1, 0.8), RGB(0.4), 0, RGB(2, 1, 0.3)), nullptr);
+  return b.done();
+}
+
+SceneDescription sky_lens() {
+  Builder b;
+  b.camera(Vec3(0, 0.3, 3), Vec3(0, 0, 0), 45, 0.15).floor(gray());
+  b.add(sphere(Vec3(0.5, -0.5, 0), 0.5),
+        make_rough_dielectric({MicrofacetKind::Beckmann, 0.25, 0.25}, 1.5));
+  b.bounds(sphere(Vec3(-0.6, -0.4, 0), 0.5), make_null(), fog(RGB(1.5), RGB(0.95)), nullptr);
+  b.emitter(make_constant_emitter(RGB(0.5, 0.7, 1)));
+  return b.done();
+}
+
+SceneDescription two_kinds_of_glass() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.4, RGB(10)).emitter(make_constant_emitter(RGB(0.2)));
+  b.add(sphere(Vec3(-0.5, -0.4, 0), 0.45), make_dielectric(1.5, RGB(1), RGB(0.9, 1, 0.9)));
+  b.add(sphere(Vec3(0.5, -0.4, 0), 0.45),
+        make_rough_dielectric({MicrofacetKind::Ggx, 0.2, 0.4}, 1.5));
+  return b.done();
+}
+
+}  // namespace
+
+const std::vector<TestScene>& test_scenes() {
+  static const std::vector<TestScene> scenes = {{"surfaces", surfaces},
+                                                {"floor-fog", floor_fog},
+                                                {"glass-sphere-fog", glass_sphere_fog},
+                                                {"fog-in-glass", fog_in_glass},
+                                                {"nested-media", nested_media},
+                                                {"mirror-fog", mirror_fog},
+                                                {"water", water},
+                                                {"flame", flame},
+                                                {"sky-lens", sky_lens},
+                                                {"two-kinds-of-glass", two_kinds_of_glass}};
+  return scenes;
+}
+
+SceneDescription make_test_scene(const std::string& name) {
+  for (const TestScene& s : test_scenes())
+    if (s.name == name) return s.make();
+  throw std::invalid_argument("no test scene " + name);
+}
+
+}  // namespace fogbow::testing
