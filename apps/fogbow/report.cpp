@@ -10,6 +10,8 @@ namespace fogbow::cli {
 
 namespace {
 
+constexpr double kFaintPercent = 0.01;
+
 double percent(double part, double whole) { return whole > 0 ? 100 * part / whole : 0; }
 
 double per_second(double count, double seconds) { return seconds > 0 ? count / seconds : 0; }
@@ -29,12 +31,24 @@ std::string mutation_line(const MutationReport& mutation) {
   return line + "\n";
 }
 
+/// Lengths that carry next to nothing share a line; the JSON has them all.
 std::string lengths_table(const RenderResult& result) {
   std::string table = "paths by number of vertices (b_k, share of b):\n";
-  for (const ClassShare& share : result.lengths)
+  std::uint64_t faint = 0;
+  double rest = 0;
+  for (const ClassShare& share : result.lengths) {
+    if (!(percent(share.value, result.b) >= kFaintPercent)) {
+      ++faint;
+      rest += share.value;
+      continue;
+    }
     table += format("  %4d  %-26s %6.2f%%\n", share.k,
                     with_error(share.value, share.standard_error).c_str(),
                     percent(share.value, result.b));
+  }
+  if (faint > 0)
+    table += format("  %s more with %.2g%%\n", count_of(faint, "length").c_str(),
+                    percent(rest, result.b));
   return table;
 }
 

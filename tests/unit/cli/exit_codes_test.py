@@ -1,6 +1,7 @@
 # SPDX-License-Identifier: GPL-3.0-or-later
 """Every exit code, and that the message says what is wrong."""
 
+import subprocess
 import unittest
 
 from support import UNUSED_PROPERTY, CliTest, scene_text
@@ -77,7 +78,8 @@ class Failures(CliTest):
 
     def test_full_standard_output(self):
         with open("/dev/full", "wb") as full:
-            self.assertEqual(self.run_cli("info", "scene.xml", stdout=full).returncode, 4)
+            result = self.run_cli("info", "scene.xml", stdout=full, stderr=subprocess.PIPE)
+        self.assertEqual((result.returncode, result.stderr), (4, b"error: standard output cannot be written\n"))
 
     def test_renderer(self):
         for outcome, code, message in [("no_light", 5, "nothing carries light"), ("numerical", 6, "the film overflows"),

@@ -27,7 +27,9 @@ class Outputs(CliTest):
         self.assertEqual(report["integrator"], "pssmlt")
         self.assertEqual(report["b"], {"value": 0.25, "standard_error": 0.0025})
         self.assertEqual(report["b_k"], [{"k": 2, "value": 0.05, "standard_error": 0.001},
-                                         {"k": 3, "value": 0.2, "standard_error": 0.002}])
+                                         {"k": 3, "value": 0.2, "standard_error": 0.002},
+                                         {"k": 4, "value": 1e-6, "standard_error": 1e-7},
+                                         {"k": 9, "value": 5e-7, "standard_error": 1e-7}])
         self.assertEqual((report["samples"], report["sample_unit"]), (40_000_000_000, "mutations"))
         self.assertEqual((report["chains"], report["groups"]), (64, 8))
         self.assertEqual(report["mutations"], [
@@ -107,6 +109,7 @@ class Outputs(CliTest):
         result = self.expect(0, "render", "scene.xml", "--time", "0.2")
         text = result.stdout.decode()
         for part in ("integrator pssmlt, 64 chains in 8 groups\n", "b = 0.2500 ± 0.0025\n", "0.0500 ± 0.0010", " 80.00%\n",
+                     "  2 lengths more with 0.0006%\n",
                      "large step       1k proposed, 25.00% accepted; refused: NonFinite 0.30%, Occluded 50.00%\n",
                      " mutations/s, ", " rays/s\n", "(1.5 CPU-s)", "wrote run.exr, run.png, run.json\n"):
             self.assertIn(part, text)

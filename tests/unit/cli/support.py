@@ -30,7 +30,7 @@ SCENE = """<?xml version="1.0" encoding="utf-8"?>
     <transform name="to_world"><rotate x="1" angle="-90"/><translate y="-1"/></transform><ref id="grey"/>
   </shape>
   <shape type="rectangle" id="light">
-    <transform name="to_world"><scale value="0.4"/><rotate x="1" angle="90"/><translate y="1"/></transform>
+    <transform name="to_world"><scale value="0.4"/><rotate x="1" angle="<!--TURN-->"/><translate y="1"/></transform>
     <ref id="grey"/><!--EMITTER-->
   </shape>
   <!--MORE-->
@@ -40,8 +40,9 @@ EMITTER = '<emitter type="area"><rgb name="radiance" value="5"/></emitter>'
 UNUSED_PROPERTY = '<bsdf type="diffuse" id="spare"><float name="nonsense" value="1"/></bsdf>'
 
 
-def scene_text(emitter=EMITTER, more=""):
-    return SCENE.replace("<!--EMITTER-->", emitter).replace("<!--MORE-->", more)
+def scene_text(emitter=EMITTER, turn=90, more=""):
+    """`turn`: the light's angle; 90 shines on the floor."""
+    return SCENE.replace("<!--EMITTER-->", emitter).replace("<!--TURN-->", str(turn)).replace("<!--MORE-->", more)
 
 
 class CliTest(unittest.TestCase):

@@ -92,7 +92,7 @@ void fill_statistics(RenderResult& result, const RenderOptions& options) {
   result.groups = 8;
   result.cpu_seconds = 1.5;
   result.rays = 123456;
-  result.lengths = {{2, 0.05, 0.001}, {3, 0.2, 0.002}};
+  result.lengths = {{2, 0.05, 0.001}, {3, 0.2, 0.002}, {4, 1e-6, 1e-7}, {9, 5e-7, 1e-7}};
   result.mutations = {{"large step", 1000, 250, {{"Occluded", 500}, {"NonFinite", 3}}},
                       {"small step", 0, 0, {}}};
   result.diagnostics = {{"r_hat", 1.01}};
