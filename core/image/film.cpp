@@ -203,9 +203,9 @@ Image Film::develop(double scale, const std::vector<double>& group_scale) const 
   return image;
 }
 
-/// Group g's estimate e_g of a pixel has the share m_g ∝ 1/group_scale[g] of the mean: with K
-/// groups the squared standard error is K/(K−1) Σ m_g² (e_g − ē)², for equal shares the usual Σ
-/// (e_g − ē)² / (K (K−1)).
+/// Group g's estimate e_g of a pixel has the share m_g ∝ 1/group_scale[g] of the mean and a
+/// variance ∝ 1/m_g: with K groups Σ m_g (e_g − ē)² / (K − 1) is an unbiased estimate of the mean's
+/// variance.
 void Film::add_error_layers(Image& image, double scale,
                             const std::vector<double>& group_scale) const {
   const std::size_t pixels = pixel_count(settings_), channels = image.channels.size();
@@ -225,8 +225,8 @@ void Film::add_error_layers(Image& image, double scale,
       e[g] = unit * group_scale[g] * static_cast<double>(group_[kGroups * p + g].load());
       mean += share[g] * e[g];
     }
-    for (int g = 0; g < kGroups; ++g) sum += sqr(share[g] * (e[g] - mean));
-    const double error = std::sqrt(groups / (groups - 1) * sum);
+    for (int g = 0; g < kGroups; ++g) sum += share[g] * sqr(e[g] - mean);
+    const double error = std::sqrt(sum / (groups - 1));
     float* pixel = &image.pixels[p * channels];
     const double brightness = luminance(RGB(pixel[0], pixel[1], pixel[2]));
     for (int c = 0; c < 3; ++c)
