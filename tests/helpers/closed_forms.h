@@ -128,7 +128,7 @@ struct PixelGrid {
 
   /// Unit direction through a raster position.
   Vec3 direction(double x, double y) const;
-  /// Box-filtered pixel by Gauss–Legendre with n × n nodes.
+  /// Box-filtered pixel by n × n Gauss–Legendre nodes; for radiance that is smooth inside the pixel.
   double pixel_mean(int x, int y, const std::function<double(const Vec3& direction)>& radiance,
                     int n = 8) const;
 };

@@ -7,6 +7,7 @@
 #include <limits>
 #include <numbers>
 #include <stdexcept>
+#include <utility>
 
 namespace fogbow::testing {
 
@@ -60,6 +61,28 @@ std::vector<double> find_roots(const std::function<double(double)>& f, double a,
     f_lo = f_hi;
   }
   return roots;
+}
+
+std::vector<double> ChebyshevInterpolant::nodes(int n, double a, double b) {
+  std::vector<double> x;
+  for (int i = 0; i < n; ++i)
+    x.push_back(a + (b - a) * (1 - std::cos(std::numbers::pi * (i + 0.5) / n)) / 2);
+  return x;
+}
+
+ChebyshevInterpolant::ChebyshevInterpolant(double a, double b, std::vector<double> values)
+    : nodes_(nodes(static_cast<int>(values.size()), a, b)), values_(std::move(values)) {}
+
+double ChebyshevInterpolant::operator()(double x) const {
+  // barycentric formula with weights (−1)^i sin((i + ½)π/n)
+  double numerator = 0, denominator = 0;
+  for (std::size_t i = 0; i < nodes_.size(); ++i) {
+    if (x == nodes_[i]) return values_[i];
+    const double weight = (i % 2 ? -1 : 1) * std::sin(std::numbers::pi * (i + 0.5) / nodes_.size());
+    numerator += weight * values_[i] / (x - nodes_[i]);
+    denominator += weight / (x - nodes_[i]);
+  }
+  return numerator / denominator;
 }
 
 }  // namespace fogbow::testing

@@ -21,4 +21,17 @@ double integrate(const std::function<double(double)>& f, double a, double b,
 std::vector<double> find_roots(const std::function<double(double)>& f, double a, double b,
                                int steps);
 
+/// Polynomial through n Chebyshev points of [a, b]; for a smooth function n = 16 is close to
+/// rounding.
+class ChebyshevInterpolant {
+ public:
+  static std::vector<double> nodes(int n, double a, double b);
+  /// `values` at nodes(values.size(), a, b).
+  ChebyshevInterpolant(double a, double b, std::vector<double> values);
+  double operator()(double x) const;
+
+ private:
+  std::vector<double> nodes_, values_;
+};
+
 }  // namespace fogbow::testing

@@ -39,5 +39,12 @@ TEST(Quadrature, RootsOfACosine) {
   for (int k = 0; k < 3; ++k) EXPECT_NEAR(roots[k], (k + 0.5) * std::acos(-1.0), 1e-14);
 }
 
+TEST(Quadrature, ChebyshevInterpolatesSmoothFunctions) {
+  std::vector<double> values;
+  for (const double x : ChebyshevInterpolant::nodes(16, 0.5, 1)) values.push_back(std::exp(-2 / x));
+  const ChebyshevInterpolant f(0.5, 1, values);
+  for (const double x : {0.5, 0.61, 0.87, 1.0}) EXPECT_NEAR(f(x), std::exp(-2 / x), 1e-12);
+}
+
 }  // namespace
 }  // namespace fogbow::testing
