@@ -68,7 +68,7 @@ std::string listed(const std::vector<std::string>& names) {
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {
   if (name.size() > 64) return {};
   const std::string* nearest = nullptr;
-  std::size_t best = std::max<std::size_t>(1, name.size() / 3) + 1;
+  std::size_t best = std::max<std::size_t>(1, (name.size() + 1) / 3) + 1;
   for (const std::string& candidate : known)
     if (const std::size_t d = edit_distance(name, candidate); d < best) {
       best = d;

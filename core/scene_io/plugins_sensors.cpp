@@ -45,9 +45,6 @@ double fov(Properties& p, double aspect) {
 PerspectiveSettings perspective_settings(Properties& p, const FilmSettings& film) {
   PerspectiveSettings s;
   s.to_world = p.transform("to_world");
-  for (int axis = 0; axis < 3; ++axis)
-    if (std::abs(length(Vec3(s.to_world.matrix()[axis])) - 1) > 1e-3)
-      p.fail("to_world", "a sensor's \"to_world\" must not scale");
   s.width = film.width;
   s.height = film.height;
   s.crop_x = film.crop_x;

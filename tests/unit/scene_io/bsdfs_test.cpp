@@ -1,0 +1,223 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene_folder.h"
+
+namespace fogbow {
+namespace {
+
+using testing::SceneFolder;
+
+// Defaults and named values: probed from Mitsuba 3.9.1 (scalar_rgb, mi.load_string, mi.traverse).
+
+std::shared_ptr<const Bsdf> load_bsdf(SceneFolder& folder, const std::string& bsdf) {
+  return folder.load("<shape type=\"sphere\">" + bsdf + "</shape>").surfaces.at(0).bsdf;
+}
+
+/// Value of the smooth part for two directions 0.3 and 0.5 off the normal, in one plane.
+RGB value(const Bsdf& bsdf) {
+  return bsdf.f_s(SurfacePoint{}, Vec3(std::sin(0.3), 0, std::cos(0.3)),
+                  Vec3(-std::sin(0.5), 0, std::cos(0.5)));
+}
+RGB dirac_value(const Bsdf& bsdf) {
+  return bsdf.f_dirac(SurfacePoint{}, Vec3(0.6, 0, 0.8), Vec3(-0.6, 0, 0.8));
+}
+
+void expect_equal(const RGB& a, const RGB& b) {
+  for (int i = 0; i < 3; ++i) EXPECT_NEAR(a[i], b[i], 1e-12 * (1 + std::abs(b[i])));
+}
+
+TEST(DefaultBsdf, IsGreyAndBlackOnEmitters) {
+  SceneFolder folder;
+  const auto scene =
+      folder.load(R"(<shape type="sphere"/><shape type="sphere"><emitter type="area"/></shape>)");
+  expect_equal(value(*scene.surfaces[0].bsdf), RGB(0.5 * kInvPi));
+  expect_equal(value(*scene.surfaces[1].bsdf), RGB(0));
+  EXPECT_TRUE(scene.surfaces[1].emitter);
+  EXPECT_FALSE(scene.surfaces[0].emitter);
+}
+
+TEST(Diffuse, TakesColorsInAllSpellings) {
+  SceneFolder folder;
+  const std::pair<const char*, RGB> cases[] = {
+      {"", RGB(0.5)},
+      {R"(<rgb name="reflectance" value="0.2, 0.3, 0.4"/>)", {0.2, 0.3, 0.4}},
+      {R"(<rgb name="reflectance" value="0.2 0.3 0.4"/>)", {0.2, 0.3, 0.4}},
+      {R"(<rgb name="reflectance" value="0.2"/>)", RGB(0.2)},
+      {R"(<spectrum name="reflectance" value="0.3"/>)", RGB(0.3)},
+      {R"(<float name="reflectance" value="0.3"/>)", RGB(0.3)},
+      {R"(<integer name="reflectance" value="1"/>)", RGB(1)},
+  };
+  for (const auto& [property, expected] : cases) {
+    const auto bsdf =
+        load_bsdf(folder, "<bsdf type=\"diffuse\">" + std::string(property) + "</bsdf>");
+    expect_equal(value(*bsdf), expected * kInvPi);
+    EXPECT_TRUE(folder.warnings.empty());
+  }
+}
+
+TEST(Twosided, TakesOneOrTwo) {
+  SceneFolder folder;
+  const Vec3 below_a(0.6, 0, -0.8), below_b(-0.6, 0, -0.8);
+  const auto one = load_bsdf(folder, R"(<bsdf type="twosided"><bsdf type="diffuse"/></bsdf>)");
+  expect_equal(one->f_s(SurfacePoint{}, below_a, below_b), RGB(0.5 * kInvPi));
+  const auto two = load_bsdf(folder, R"(<bsdf type="twosided"><bsdf type="diffuse"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.1"/></bsdf></bsdf>)");
+  expect_equal(two->f_s(SurfacePoint{}, below_a, below_b), RGB(0.1 * kInvPi));
+  expect_equal(value(*two), RGB(0.5 * kInvPi));
+  EXPECT_NE(
+      folder.error(R"(<bsdf type="twosided"/>)").find("needs one or two nested bsdfs, found 0"),
+      std::string::npos);
+  EXPECT_NE(folder
+                .error(R"(<bsdf type="twosided"><bsdf type="diffuse"/><bsdf type="diffuse"/>
+      <bsdf type="diffuse"/></bsdf>)")
+                .find("found 3"),
+            std::string::npos);
+  EXPECT_EQ(folder.error(R"(<bsdf type="twosided"><bsdf type="dielectric"/></bsdf>)")
+                .find("scene.xml:2:1: "),
+            0u);
+}
+
+TEST(Dielectric, KnowsMitsubasIndices) {
+  const std::pair<const char*, double> indices[] = {
+      {"vacuum", 1.0},      {"helium", 1.000036},        {"hydrogen", 1.000132},
+      {"air", 1.000277},    {"carbon dioxide", 1.00045}, {"water", 1.333},
+      {"acetone", 1.36},    {"ethanol", 1.361},          {"carbon tetrachloride", 1.461},
+      {"glycerol", 1.4729}, {"benzene", 1.501},          {"silicone oil", 1.52045},
+      {"bromine", 1.661},   {"water ice", 1.31},         {"fused quartz", 1.458},
+      {"pyrex", 1.47},      {"acrylic glass", 1.49},     {"polypropylene", 1.49},
+      {"bk7", 1.5046},      {"sodium chloride", 1.544},  {"amber", 1.55},
+      {"pet", 1.575},       {"diamond", 2.419}};
+  SceneFolder folder;
+  for (const auto& [name, eta] : indices) {
+    const auto bsdf = load_bsdf(
+        folder, "<bsdf type=\"dielectric\"><string name=\"int_ior\" value=\"" + std::string(name) +
+                    "\"/><float name=\"ext_ior\" value=\"1\"/></bsdf>");
+    EXPECT_NEAR(bsdf->eta(), eta, 1e-12) << name;
+  }
+  EXPECT_NE(
+      folder.error(R"(<bsdf type="dielectric"><string name="int_ior" value="watr"/></bsdf>)")
+          .find("2:25: no index of refraction is known for \"watr\" (did you mean \"water\"?)"),
+      std::string::npos);
+}
+
+TEST(Dielectric, Defaults) {
+  SceneFolder folder;
+  for (const char* plugin : {"dielectric", "roughdielectric"}) {
+    const std::string open = "<bsdf type=\"" + std::string(plugin) + "\">";
+    EXPECT_NEAR(load_bsdf(folder, open + "</bsdf>")->eta(), 1.50418, 5e-6);
+    EXPECT_NEAR(load_bsdf(folder, open + R"(<float name="int_ior" value="1.0"/>
+        <float name="ext_ior" value="1.5"/></bsdf>)")
+                    ->eta(),
+                1 / 1.5, 1e-12);
+    EXPECT_NEAR(load_bsdf(folder, open + R"(<string name="int_ior" value="water"/>
+        <integer name="ext_ior" value="1"/></bsdf>)")
+                    ->eta(),
+                1.333, 1e-12);
+    EXPECT_NE(folder.error(open + R"(<float name="int_ior" value="-1"/></bsdf>)")
+                  .find("greater than zero"),
+              std::string::npos);
+  }
+  EXPECT_NE(folder
+                .error(R"(<bsdf type="roughdielectric"><float name="int_ior" value="1"/>
+      <float name="ext_ior" value="1"/></bsdf>)")
+                .find("must differ"),
+            std::string::npos);
+  EXPECT_EQ(load_bsdf(folder, R"(<bsdf type="dielectric"><float name="int_ior" value="1"/>
+      <float name="ext_ior" value="1"/></bsdf>)")
+                ->eta(),
+            1);
+}
+
+TEST(Dielectric, TintsReflectionAndTransmission) {
+  SceneFolder folder;
+  const auto plain = load_bsdf(folder, R"(<bsdf type="dielectric"/>)");
+  const auto tinted = load_bsdf(folder, R"(<bsdf type="dielectric">
+      <rgb name="specular_reflectance" value="0.5, 0.25, 1"/>
+      <rgb name="specular_transmittance" value="0.125"/></bsdf>)");
+  expect_equal(dirac_value(*tinted), RGB(0.5, 0.25, 1) * dirac_value(*plain));
+  const Vec3 up(0, 0, 1), down(0, 0, -1);
+  const RGB through = plain->f_dirac(SurfacePoint{}, up, down);
+  EXPECT_GT(through.x, 0);
+  expect_equal(tinted->f_dirac(SurfacePoint{}, up, down), 0.125 * through);
+}
+
+/// Fresnel reflectance of a conductor at normal incidence.
+double normal_reflectance(double eta, double k) {
+  return (sqr(eta - 1) + sqr(k)) / (sqr(eta + 1) + sqr(k));
+}
+
+TEST(Conductor, IsAMirrorUnlessToldOtherwise) {
+  SceneFolder folder;
+  const Vec3 n(0, 0, 1);
+  const auto reflectance = [&](const std::string& properties) {
+    return load_bsdf(folder, "<bsdf type=\"conductor\">" + properties + "</bsdf>")
+        ->f_dirac(SurfacePoint{}, n, n);
+  };
+  const RGB mirror = reflectance("");
+  expect_equal(reflectance(R"(<string name="material" value="none"/>)"), mirror);
+  expect_equal(reflectance(R"(<string name="material" value="none"/>
+      <rgb name="specular_reflectance" value="0.9, 0.75, 0.5"/>)"),
+               RGB(0.9, 0.75, 0.5) * mirror);
+  expect_equal(
+      reflectance(
+          R"(<rgb name="eta" value="0.2, 0.9, 1.1"/><rgb name="k" value="3.9, 2.4, 2.2"/>)"),
+      mirror * RGB(normal_reflectance(0.2, 3.9), normal_reflectance(0.9, 2.4),
+                   normal_reflectance(1.1, 2.2)));
+  expect_equal(reflectance(R"(<float name="eta" value="0.2"/><float name="k" value="3.9"/>)"),
+               mirror * normal_reflectance(0.2, 3.9));
+  expect_equal(reflectance(R"(<float name="eta" value="0.2"/>)"),
+               mirror * normal_reflectance(0.2, 1));
+  EXPECT_NE(folder.error(R"(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)")
+                .find("2:24: the conductor \"Au\" is not supported yet; known: \"none\""),
+            std::string::npos);
+  EXPECT_NE(folder
+                .error(R"(<bsdf type="conductor"><string name="material" value="none"/>
+      <rgb name="eta" value="1"/></bsdf>)")
+                .find("either \"material\", or \"eta\" and \"k\""),
+            std::string::npos);
+}
+
+TEST(Rough, DefaultsAndSpellingsOfRoughness) {
+  SceneFolder folder;
+  for (const std::string plugin : {"roughconductor", "roughdielectric"}) {
+    const auto at = [&](const std::string& properties) {
+      return value(*load_bsdf(folder, "<bsdf type=\"" + plugin + "\">" + properties + "</bsdf>"));
+    };
+    const RGB standard = at("");
+    EXPECT_GT(standard.x, 0);
+    expect_equal(
+        at(R"(<float name="alpha" value="0.1"/><string name="distribution" value="beckmann"/>)"),
+        standard);
+    expect_equal(at(R"(<float name="alpha_u" value="0.1"/><float name="alpha_v" value="0.1"/>)"),
+                 standard);
+    expect_equal(at(R"(<boolean name="sample_visible" value="true"/>)"), standard);
+    const RGB ggx = at(R"(<string name="distribution" value="ggx"/>)");
+    EXPECT_GT(std::abs(ggx.x / standard.x - 1), 0.01);
+    expect_equal(at(R"(<string name="distribution" value="GGX"/>)"), ggx);
+    EXPECT_GT(std::abs(at(R"(<float name="alpha" value="0.3"/>)").x / standard.x - 1), 0.01);
+    const RGB u = at(R"(<float name="alpha_u" value="0.3"/><float name="alpha_v" value="0.1"/>)");
+    const RGB v = at(R"(<float name="alpha_u" value="0.1"/><float name="alpha_v" value="0.3"/>)");
+    EXPECT_GT(std::abs(u.x / v.x - 1), 0.01);
+    const auto error = [&](const std::string& properties) {
+      return folder.error("<bsdf type=\"" + plugin + "\">" + properties + "</bsdf>");
+    };
+    EXPECT_NE(error(R"(<float name="alpha_u" value="0.1"/>)").find("both \"alpha_u\" and"),
+              std::string::npos);
+    EXPECT_NE(
+        error(R"(<float name="alpha" value="1"/><float name="alpha_v" value="1"/>)").find("either"),
+        std::string::npos);
+    EXPECT_NE(
+        error(R"(<string name="distribution" value="phong"/>)").find("\"beckmann\" or \"ggx\""),
+        std::string::npos);
+    EXPECT_NE(error(R"(<float name="alpha" value="0"/>)").find("greater than zero"),
+              std::string::npos);
+  }
+}
+
+TEST(Null, PassesLight) {
+  SceneFolder folder;
+  const auto bsdf = load_bsdf(folder, R"(<bsdf type="null"/>)");
+  EXPECT_EQ(bsdf->opacity(SurfacePoint{}), 0);
+}
+
+}  // namespace
+}  // namespace fogbow

@@ -1,0 +1,162 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene_folder.h"
+
+namespace fogbow {
+namespace {
+
+using testing::SceneFolder;
+
+// Defaults: probed from Mitsuba 3.9.1 (scalar_rgb, mi.load_string, mi.traverse); `emission` is
+// ours.
+
+EmitterPoint position_of(const Emitter& emitter) {
+  return emitter.sample_position(Vec3(0.5)).value();
+}
+
+TEST(PointEmitter, StandsWherePositionOrTransformSay) {
+  SceneFolder folder;
+  const std::pair<const char*, Vec3> cases[] = {
+      {"", {0, 0, 0}},
+      {R"(<point name="position" value="1, 2, 3"/>)", {1, 2, 3}},
+      {R"(<point name="position" x="1" y="2" z="3"/>)", {1, 2, 3}},
+      {R"(<vector name="position" x="1" y="2" z="3"/>)", {1, 2, 3}},
+      {R"(<transform name="to_world"><translate x="1" y="2" z="3"/></transform>)", {1, 2, 3}},
+  };
+  for (const auto& [property, position] : cases) {
+    const auto scene =
+        folder.load("<emitter type=\"point\">" + std::string(property) + "</emitter>");
+    ASSERT_EQ(scene.emitters.size(), 1u);
+    const Emitter& emitter = *scene.emitters[0];
+    ASSERT_EQ(emitter.kind(), EmitterKind::Point);
+    EXPECT_EQ(position_of(emitter).surface.position, position);
+    EXPECT_EQ(emitter.L_e(position_of(emitter), Vec3(0, 0, 1)), RGB(1));
+    EXPECT_TRUE(folder.warnings.empty());
+  }
+  const auto scene =
+      folder.load(R"(<emitter type="point"><rgb name="intensity" value="1,2,3"/></emitter>)");
+  EXPECT_EQ(scene.emitters[0]->L_e(position_of(*scene.emitters[0]), Vec3(0, 0, 1)), RGB(1, 2, 3));
+  EXPECT_NE(folder
+                .error(R"(<emitter type="point"><point name="position" value="1"/>
+      <transform name="to_world"/></emitter>)")
+                .find("either \"position\" or \"to_world\""),
+            std::string::npos);
+}
+
+TEST(ConstantEmitter, HasRadianceOneUnlessToldOtherwise) {
+  SceneFolder folder;
+  const auto radiance = [&](const std::string& property) {
+    const auto scene = folder.load("<emitter type=\"constant\">" + property + "</emitter>");
+    EXPECT_EQ(scene.emitters.at(0)->kind(), EmitterKind::Infinite);
+    scene.emitters[0]->bind(Vec3(0), 1);
+    return scene.emitters[0]->L_e(EmitterPoint{}, Vec3(0, 0, 1));
+  };
+  EXPECT_EQ(radiance(""), RGB(1));
+  EXPECT_EQ(radiance(R"(<rgb name="radiance" value="1, 2, 3"/>)"), RGB(1, 2, 3));
+  EXPECT_EQ(radiance(R"(<spectrum name="radiance" value="4"/>)"), RGB(4));
+}
+
+TEST(AreaEmitter, BelongsToItsShape) {
+  SceneFolder folder;
+  const auto scene = folder.load(R"(
+    <emitter type="area" id="lamp"><rgb name="radiance" value="1, 2, 3"/></emitter>
+    <shape type="rectangle"><emitter type="area"/></shape>
+    <shape type="rectangle"><ref id="lamp"/></shape>
+    <shape type="sphere"><ref id="lamp"/></shape>)");
+  EXPECT_TRUE(folder.warnings.empty());
+  EXPECT_TRUE(scene.emitters.empty());
+  const RGB expected[] = {RGB(1), RGB(1, 2, 3), RGB(1, 2, 3)};
+  for (std::size_t i = 0; i < 3; ++i) {
+    const Emitter& emitter = *scene.surfaces[i].emitter;
+    ASSERT_EQ(emitter.kind(), EmitterKind::Area);
+    const EmitterPoint x = position_of(emitter);
+    EXPECT_EQ(emitter.L_e(x, x.surface.n_g), expected[i]);
+    EXPECT_EQ(emitter.L_e(x, -x.surface.n_g), RGB(0));
+    EXPECT_NEAR(x.pdf_position, 1 / scene.surfaces[i].shape->area(), 1e-12);
+  }
+}
+
+std::shared_ptr<const Medium> load_medium(SceneFolder& folder, const std::string& properties) {
+  return folder
+      .load("<shape type=\"sphere\"><medium type=\"homogeneous\" name=\"interior\" id=\"m\">" +
+            properties + "</medium></shape>")
+      .surfaces.at(0)
+      .interior;
+}
+
+TEST(HomogeneousMedium, DefaultsAndProperties) {
+  SceneFolder folder;
+  const Vec3 p(0);
+  const auto standard = load_medium(folder, "");
+  EXPECT_EQ(standard->sigma_t(p), RGB(1));
+  EXPECT_EQ(standard->sigma_s(p), RGB(0.75));
+  EXPECT_EQ(standard->emission(p), RGB(0));
+  EXPECT_EQ(standard->phase().mean_cosine(), 0);
+  EXPECT_EQ(standard->id(), "m");
+  const auto full = load_medium(folder, R"(<rgb name="sigma_t" value="1, 2, 4"/>
+      <rgb name="albedo" value="0.5, 0.25, 1"/><float name="scale" value="3"/>
+      <rgb name="emission" value="7, 8, 9"/><boolean name="sample_emitters" value="false"/>
+      <boolean name="has_spectral_extinction" value="true"/>
+      <phase type="hg"><float name="g" value="-0.25"/></phase>)");
+  EXPECT_EQ(full->sigma_t(p), RGB(3, 6, 12));
+  EXPECT_EQ(full->sigma_s(p), RGB(1.5, 1.5, 12));
+  EXPECT_EQ(full->emission(p), RGB(7, 8, 9));
+  EXPECT_EQ(full->phase().mean_cosine(), -0.25);
+  EXPECT_TRUE(folder.warnings.empty());
+  EXPECT_EQ(load_medium(folder, R"(<phase type="hg"/>)")->phase().mean_cosine(), 0.8);
+  EXPECT_EQ(load_medium(folder, R"(<phase type="isotropic"/>)")->phase().mean_cosine(), 0);
+}
+
+TEST(HomogeneousMedium, RefusesWhatItCannotMean) {
+  SceneFolder folder;
+  const auto error = [&](const std::string& properties) {
+    return folder.error("<medium type=\"homogeneous\">" + properties + "</medium>");
+  };
+  EXPECT_NE(error(R"(<string name="material" value="skin1"/>)")
+                .find("2:28: \"material\" is not supported yet"),
+            std::string::npos);
+  EXPECT_NE(error(R"(<rgb name="sigma_s" value="1"/>)").find("\"sigma_s\" is not supported yet"),
+            std::string::npos);
+  EXPECT_NE(
+      error(R"(<rgb name="albedo" value="2"/>)").find("2:28: \"albedo\" must lie between 0 and 1"),
+      std::string::npos);
+  EXPECT_NE(
+      error(R"(<rgb name="sigma_t" value="-1"/>)").find("2:28: \"sigma_t\" must not be negative"),
+      std::string::npos);
+  EXPECT_NE(error(R"(<float name="scale" value="-1"/>)").find("\"scale\" must not be negative"),
+            std::string::npos);
+  EXPECT_NE(error(R"(<rgb name="sigma_t" value="1e300"/><float name="scale" value="1e300"/>)")
+                .find("scene.xml:2:1: "),
+            std::string::npos);
+  EXPECT_NE(error(R"(<phase type="hg"/><phase type="isotropic"/>)").find("found 2"),
+            std::string::npos);
+  for (const char* g : {"1", "-1", "1.5"})
+    EXPECT_NE(
+        error("<phase type=\"hg\"><float name=\"g\" value=\"" + std::string(g) + "\"/></phase>")
+            .find("2:45: \"g\" must lie strictly between -1 and 1"),
+        std::string::npos);
+}
+
+TEST(Boundary, IsOneIffAMediumIsNamed) {
+  SceneFolder folder;
+  const auto scene = folder.load(R"(
+    <medium type="homogeneous" id="fog"/><medium type="homogeneous" id="smoke"/>
+    <shape type="sphere"/>
+    <shape type="sphere"><ref name="interior" id="fog"/></shape>
+    <shape type="sphere"><ref name="exterior" id="fog"/></shape>
+    <shape type="sphere"><ref name="interior" id="smoke"/><ref name="exterior" id="fog"/></shape>)");
+  const auto& s = scene.surfaces;
+  EXPECT_FALSE(s[0].medium_boundary);
+  EXPECT_TRUE(s[1].medium_boundary && s[2].medium_boundary && s[3].medium_boundary);
+  EXPECT_TRUE(s[1].interior && !s[1].exterior && !s[2].interior && s[3].interior);
+  EXPECT_EQ(s[1].interior, s[2].exterior);
+  EXPECT_EQ(s[1].interior, s[3].exterior);
+  EXPECT_NE(s[3].interior, s[3].exterior);
+  EXPECT_NE(folder
+                .error(R"(<medium type="homogeneous" id="fog"/><shape type="sphere">
+      <ref name="interior" id="fog"/><ref name="interior" id="fog"/></shape>)")
+                .find("3:38: a second \"interior\" medium"),
+            std::string::npos);
+}
+
+}  // namespace
+}  // namespace fogbow

@@ -1,0 +1,250 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "scene_folder.h"
+
+namespace fogbow {
+namespace {
+
+using testing::SceneFolder;
+
+Surface load_shape(SceneFolder& folder, const std::string& type, const std::string& properties) {
+  auto scene = folder.load("<shape type=\"" + type + "\">" + properties + "</shape>");
+  EXPECT_TRUE(folder.warnings.empty()) << folder.warnings.front();
+  return scene.surfaces.at(0);
+}
+
+/// What a ray from `o` towards `d` meets first.
+SurfacePoint meet(const Shape& shape, const Vec3& o, const Vec3& d) {
+  std::optional<SurfacePoint> best;
+  double nearest = kInfinity;
+  for (std::uint32_t i = 0; i < shape.primitive_count(); ++i)
+    if (const auto hit = shape.intersect(i, Ray{o, d, 0, nearest}, false)) {
+      nearest = hit->t;
+      best = shape.surface_point(i, hit->local);
+    }
+  EXPECT_TRUE(best);
+  return best.value_or(SurfacePoint{});
+}
+
+void expect_near(const Vec3& a, const Vec3& b) {
+  EXPECT_NEAR(length(a - b), 0, 1e-12 * (1 + length(b)));
+}
+
+const char* kMirror = R"(<transform name="to_world"><scale x="-1"/></transform>)";
+const char* kFlip = R"(<boolean name="flip_normals" value="true"/>)";
+
+/// Normals as Mitsuba 3.9.1 gives them for rays from (0, 0, 5) down; where its geometric and
+/// shading normals disagree (mirrored rectangles and cubes) the latter, which decides what the
+/// material shows.
+TEST(Shapes, NormalsUnderMirrorsAndFlips) {
+  SceneFolder folder;
+  struct Case {
+    const char* type;
+    std::string properties;
+    double z, n;
+  };
+  const std::string negative = R"(<transform name="to_world"><scale value="-2"/></transform>)";
+  const Case cases[] = {
+      {"rectangle", "", 0, 1},     {"rectangle", kFlip, 0, -1}, {"rectangle", kMirror, 0, 1},
+      {"cube", "", 1, 1},          {"cube", kFlip, 1, -1},      {"cube", kMirror, 1, 1},
+      {"sphere", "", 1, 1},        {"sphere", kFlip, 1, -1},    {"sphere", kMirror, 1, -1},
+      {"sphere", negative, 2, -1},
+  };
+  for (const Case& c : cases) {
+    const Surface s = load_shape(folder, c.type, c.properties);
+    const SurfacePoint x = meet(*s.shape, Vec3(0, 0, 5), Vec3(0, 0, -1));
+    expect_near(x.position, Vec3(0, 0, c.z));
+    expect_near(x.n_g, Vec3(0, 0, c.n));
+    expect_near(x.shading.n, Vec3(0, 0, c.n));
+  }
+}
+
+TEST(Sphere, CenterRadiusAndTransform) {
+  SceneFolder folder;
+  const Surface s = load_shape(folder, "sphere", R"(<point name="center" x="1" y="0" z="0"/>
+      <float name="radius" value="2"/><transform name="to_world"><scale value="2"/>
+      <rotate z="1" angle="90"/><translate x="1" y="2" z="3"/></transform>)");
+  expect_near(s.shape->bounds().center(), Vec3(1, 4, 3));
+  EXPECT_NEAR(s.shape->area(), 4 * kPi * 16, 1e-9);
+  EXPECT_NE(
+      folder
+          .error(
+              R"(<shape type="sphere"><transform name="to_world"><scale x="2"/></transform></shape>)")
+          .find("2:22: a sphere's \"to_world\" must scale alike"),
+      std::string::npos);
+}
+
+/// The columns of a rectangle's transform, read off its corners.
+Mat4 transform_of(SceneFolder& folder, const std::string& steps) {
+  const Surface s =
+      load_shape(folder, "rectangle", "<transform name=\"to_world\">" + steps + "</transform>");
+  const auto at = [&](double x, double y) {
+    return s.shape->sample(Vec2((x + 1) / 2, (y + 1) / 2)).position;
+  };
+  Mat4 m(1.0);
+  m[3] = Vec4(at(0, 0), 1);
+  m[0] = Vec4(at(0.5, 0) - at(-0.5, 0), 0);
+  m[1] = Vec4(at(0, 0.5) - at(0, -0.5), 0);
+  return m;
+}
+
+/// Matrices as Mitsuba 3.9.1 prints them: images of the origin, x and y.
+TEST(Transforms, EveryStepInEverySpelling) {
+  SceneFolder folder;
+  struct Case {
+    const char* steps;
+    Vec3 origin, x, y;
+  };
+  const Vec3 o(0), ex(1, 0, 0), ey(0, 1, 0);
+  const Case cases[] = {
+      {"", o, ex, ey},
+      {R"(<translate x="1" y="2" z="3"/>)", {1, 2, 3}, ex, ey},
+      {R"(<translate value="1, 2, 3"/>)", {1, 2, 3}, ex, ey},
+      {R"(<translate value="1 2 3"/>)", {1, 2, 3}, ex, ey},
+      {R"(<translate value="2"/>)", {2, 2, 2}, ex, ey},
+      {R"(<translate y="2"/>)", {0, 2, 0}, ex, ey},
+      {R"(<scale value="2"/>)", o, {2, 0, 0}, {0, 2, 0}},
+      {R"(<scale value="1, 2, 3"/>)", o, ex, {0, 2, 0}},
+      {R"(<scale x="2"/>)", o, {2, 0, 0}, ey},
+      {R"(<rotate x="1" angle="90"/>)", o, ex, {0, 0, 1}},
+      {R"(<rotate value="1, 0, 0" angle="90"/>)", o, ex, {0, 0, 1}},
+      {R"(<rotate z="2" angle="90"/>)", o, {0, 1, 0}, {-1, 0, 0}},
+      {R"(<matrix value="1 0 0 5 0 1 0 6 0 0 1 7 0 0 0 1"/>)", {5, 6, 7}, ex, ey},
+      {R"(<matrix value="1 2 0 0 1 0 0 0 1"/>)", o, ex, {2, 1, 0}},
+      {R"(<lookat origin="0,0,5" target="0,0,0" up="0,1,0"/>)", {0, 0, 5}, {-1, 0, 0}, ey},
+      {R"(<lookat origin="0,0,5" target="0,0,0"/>)", {0, 0, 5}, {0, 1, 0}, {1, 0, 0}},
+      {R"(<scale value="2"/><translate x="1" y="0" z="0"/>)", {1, 0, 0}, {2, 0, 0}, {0, 2, 0}},
+      {R"(<translate x="1" y="0" z="0"/><scale value="2"/>)", {2, 0, 0}, {2, 0, 0}, {0, 2, 0}},
+      {R"(<scale x="2"/><rotate z="1" angle="90"/><translate y="3"/>)",
+       {0, 3, 0},
+       {0, 2, 0},
+       {-1, 0, 0}},
+  };
+  for (const Case& c : cases) {
+    const Mat4 m = transform_of(folder, c.steps);
+    SCOPED_TRACE(c.steps);
+    expect_near(Vec3(m[3]), c.origin);
+    expect_near(Vec3(m[0]), c.x);
+    expect_near(Vec3(m[1]), c.y);
+  }
+}
+
+TEST(Transforms, FailWithTheStep) {
+  SceneFolder folder;
+  const std::pair<const char*, const char*> cases[] = {
+      {R"(<scale x="0"/>)", "3:1: transform is singular"},
+      {R"(<rotate x="1"/>)", "3:1: <rotate> needs the attribute \"angle\""},
+      {R"(<rotate angle="90"/>)", "3:1: rotation axis is zero"},
+      {R"(<matrix value="1 2"/>)", "3:9: expected the 9 or 16 numbers of a matrix, found 2"},
+      {R"(<matrix value="1 0 0 0 0 1 0 0 0 0 1 0 0 0 1 1"/>)", "3:1: transform is not affine"},
+      {R"(<lookat origin="0,0,1" target="0,0,1" up="0,1,0"/>)",
+       "3:1: lookat origin and target coincide"},
+      {R"(<lookat origin="0,0,1" target="0,0,0" up="0,0,1"/>)", "3:1: lookat up is parallel"},
+      {R"(<lookat target="0,0,0" up="0,0,1"/>)", "3:1: <lookat> needs the attribute \"origin\""},
+      {R"(<translate value="1,2"/>)", "3:12: expected one or three numbers"},
+      {R"(<scale value="2" x="3"/>)", "3:18: give either \"value\""},
+      {R"(<scale value="1e200"/><scale value="1e200"/>)", "3:1: transform is singular"},
+      {R"(<rotat x="1" angle="5"/>)",
+       "3:1: expected a step of a transform (\"translate\", \"rotate\", \"scale\", "
+       "\"matrix\" and \"lookat\"), found <rotat> (did you mean \"rotate\"?)"},
+      {R"(<float name="a" value="1"/>)", "3:1: expected a step of a transform"},
+  };
+  for (const auto& [step, message] : cases)
+    EXPECT_EQ(folder
+                  .error("<shape type=\"cube\"><transform name=\"to_world\">\n" +
+                         std::string(step) + "</transform></shape>")
+                  .find("scene.xml:" + std::string(message)),
+              0u)
+        << step;
+}
+
+// Mitsuba 3.9.1, a square at z = 0 seen from (0.3, 0.1, 5): geometric and shading normal.
+struct MeshCase {
+  const char* file;
+  const char* properties;
+  Vec3 n_g, n_s;
+};
+
+TEST(Meshes, NormalsAsMitsubaShowsThem) {
+  SceneFolder folder;
+  const std::string v = "v -1 -1 0\nv 1 -1 0\nv 1 1 0\nv -1 1 0\n";
+  folder.write("plain.obj", v + "f 1 2 3 4\n");
+  folder.write("normals.obj", v + "vn 0 0.6 0.8\nf 1//1 2//1 3//1 4//1\n");
+  folder.write("mixed.obj", v + "vn 0 0 2\nf 1//1 2//1 3 4\n");
+  // A file whose normals contradict its winding: they decide.
+  folder.write("against.obj", v + "vn 0 0.6 -0.8\nf 1//1 2//1 3//1 4//1\n");
+  const char* face = R"(<boolean name="face_normals" value="true"/>)";
+  const Vec3 up(0, 0, 1), down(0, 0, -1), tilted(0, 0.6, 0.8), below(0, 0.6, -0.8);
+  const MeshCase cases[] = {
+      {"plain.obj", "", up, up},
+      {"plain.obj", face, up, up},
+      {"plain.obj", kFlip, down, down},
+      {"plain.obj", kMirror, down, down},
+      {"normals.obj", "", up, tilted},
+      {"normals.obj", face, up, up},
+      {"normals.obj", kFlip, down, -tilted},
+      {"normals.obj", kMirror, up, tilted},
+      {"mixed.obj", "", up, up},
+      {"against.obj", "", down, below},
+      {"against.obj", face, up, up},
+  };
+  for (const MeshCase& c : cases) {
+    SCOPED_TRACE(std::string(c.file) + " " + c.properties);
+    const Surface s = load_shape(
+        folder, "obj",
+        "<string name=\"filename\" value=\"" + std::string(c.file) + "\"/>" + c.properties);
+    const SurfacePoint x = meet(*s.shape, Vec3(0.3, 0.1, 5), Vec3(0, 0, -1));
+    expect_near(x.n_g, c.n_g);
+    expect_near(x.shading.n, c.n_s);
+  }
+}
+
+TEST(Meshes, AreSmoothUnlessFaceNormals) {
+  SceneFolder folder;
+  const std::string tent =
+      "ply\nformat ascii 1.0\nelement vertex 4\nproperty float x\nproperty float y\nproperty float "
+      "z\n"
+      "element face 2\nproperty list uchar int vertex_indices\nend_header\n"
+      "-1 -1 -1\n1 -1 -1\n0 0 0\n0 1 -1\n3 0 1 2\n3 1 3 2\n";
+  folder.write("tent.ply", tent);
+  const std::string file = R"(<string name="filename" value="tent.ply"/>)";
+  const Vec3 o(0, -0.3, 5);
+  const auto smooth = meet(*load_shape(folder, "ply", file).shape, o, Vec3(0, 0, -1));
+  const auto faceted = meet(
+      *load_shape(folder, "ply", file + R"(<boolean name="face_normals" value="true"/>)").shape, o,
+      Vec3(0, 0, -1));
+  expect_near(smooth.n_g, faceted.n_g);
+  expect_near(faceted.shading.n, faceted.n_g);
+  EXPECT_GT(length(smooth.shading.n - smooth.n_g), 0.01);
+}
+
+TEST(Meshes, TextureCoordinatesFlipInObjAlone) {
+  SceneFolder folder;
+  folder.write("uv.obj", "v -1 -1 0\nv 1 -1 0\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 0 1\nf 1/1 2/2 3/3\n");
+  folder.write("uv.ply",
+               "ply\nformat ascii 1.0\nelement vertex 3\nproperty float x\nproperty float "
+               "y\nproperty float z\n"
+               "property float u\nproperty float v\nelement face 1\nproperty list uchar int "
+               "vertex_indices\nend_header\n"
+               "-1 -1 0 0 0\n1 -1 0 1 0\n-1 1 0 0 1\n3 0 1 2\n");
+  const auto uv = [&](const std::string& type, const std::string& extra) {
+    const Surface s =
+        load_shape(folder, type, "<string name=\"filename\" value=\"uv." + type + "\"/>" + extra);
+    return meet(*s.shape, Vec3(-0.5, -0.8, 5), Vec3(0, 0, -1)).uv;
+  };
+  const Vec2 straight(0.25, 0.1), flipped(0.25, 0.9);
+  EXPECT_NEAR(length(uv("obj", "") - flipped), 0, 1e-12);
+  EXPECT_NEAR(length(uv("ply", "") - straight), 0, 1e-12);
+  EXPECT_NEAR(length(uv("obj", R"(<boolean name="flip_tex_coords" value="false"/>)") - straight), 0,
+              1e-12);
+}
+
+TEST(Surfaces, RememberWhereTheyStand) {
+  SceneFolder folder;
+  const auto scene = folder.load("<shape type=\"sphere\"/>\n  <shape id=\"box\" type=\"cube\"/>");
+  EXPECT_EQ(scene.surfaces[1].id, "box");
+  EXPECT_EQ(to_string(scene.surfaces[1].where), folder.path("scene.xml").string() + ":3:3");
+  EXPECT_EQ(scene.title, folder.path("scene.xml").string());
+}
+
+}  // namespace
+}  // namespace fogbow
