@@ -34,9 +34,9 @@ class RoughConductor final : public ReflectingBsdf {
     if (!(to.z > 0)) return std::nullopt;
     return BsdfSample{to, false, reflected_pdf(from, normalize(from + to))};
   }
-  std::optional<Vec3> invert(const SurfacePoint&, const Vec3& from, const Vec3& to, bool dirac,
+  std::optional<Vec3> invert(const SurfacePoint& x, const Vec3& from, const Vec3& to, bool dirac,
                              const Vec3& auxiliary) const override {
-    if (dirac || !(from.z > 0 && to.z > 0)) return std::nullopt;
+    if (dirac || !(pdf_sigma(x, from, to) > 0)) return std::nullopt;
     const Vec2 u = facets_.invert_visible(from, normalize(from + to));
     return Vec3(auxiliary.x, u.x, u.y);
   }

@@ -113,10 +113,10 @@ std::optional<BsdfSample> RoughDielectric::sample(const SurfacePoint& x, const V
   return BsdfSample{to, false, pdf};
 }
 
-std::optional<Vec3> RoughDielectric::invert(const SurfacePoint&, const Vec3& from, const Vec3& to,
+std::optional<Vec3> RoughDielectric::invert(const SurfacePoint& x, const Vec3& from, const Vec3& to,
                                             bool dirac, const Vec3& auxiliary) const {
-  const auto m = dirac ? std::nullopt : facet(from, to);
-  if (!m || !(event_probability(*m) > 0)) return std::nullopt;
+  if (dirac || !(pdf_sigma(x, from, to) > 0)) return std::nullopt;
+  const auto m = facet(from, to);
   const double side = from.z > 0 ? 1.0 : -1.0;
   const Vec2 u = facets_.invert_visible(side * from, m->h);
   const double P = reflection_probability(m->F);
