@@ -54,7 +54,7 @@ class Render(CliTest):
         self.write("../elsewhere.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n")
         self.write("apart.xml", scene_text(more=MESH_ELSEWHERE))
         self.expect(0, "check", "apart.xml")
-        self.expect(3, "render", "apart.xml", "--sandbox-paths", message="elsewhere.obj")
+        self.expect(4, "render", "apart.xml", "--sandbox-paths", message="outside")
         self.expect(3, "render", "scene.xml", "--crop", "10,0,10,4", message="crop")
         self.assertEqual(self.files(), ["apart.xml", "dark.xml", "scene.xml", "unlit.xml"])
 
