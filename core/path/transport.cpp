@@ -32,13 +32,14 @@ class RayCounter {
   }
 
  private:
+  // Never destroyed: threads may end after static objects have.
   static std::mutex& mutex() {
-    static std::mutex m;
-    return m;
+    static auto* m = new std::mutex;
+    return *m;
   }
   static std::set<const RayCounter*>& counters() {
-    static std::set<const RayCounter*> all;
-    return all;
+    static auto* all = new std::set<const RayCounter*>;
+    return *all;
   }
   static std::uint64_t& retired() {
     static std::uint64_t n = 0;
