@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// An isothermal cavity, described in code: a closed room whose walls emit (1 − ρ) B and whose fog
-// emits σ_a B per unit length looks exactly B in every direction, for every estimator (energy
-// balance; Chandrasekhar 1960).
+// An isothermal cavity, described in code: a closed room whose walls emit (1 − ρ) B, around a cloud
+// that emits σ_a B per unit length, looks exactly B in every direction, for every estimator.
 #include <fogbow/fogbow.h>
 
 #include <cmath>
@@ -24,12 +23,17 @@ fogbow::SceneDescription isothermal_cavity() {
   room.shape = make_cube(Transform(), /*flip_normals=*/true);
   room.bsdf = make_diffuse(RGB(kReflectance));
   room.emitter = make_area_emitter(room.shape, RGB((1 - kReflectance) * kRadiance));
-  room.medium_boundary = true;
-  room.exterior = fog;  // the normals, and with them the exterior side, face the room
   room.id = "room";
 
+  Surface cloud;
+  cloud.shape = make_cube(Transform::scale(Vec3(0.8)));
+  cloud.bsdf = make_null();
+  cloud.medium_boundary = true;
+  cloud.interior = fog;
+  cloud.id = "cloud";
+
   SceneDescription description;
-  description.surfaces.push_back(room);
+  description.surfaces = {room, cloud};
   description.film.width = description.film.height = kSize;
   description.film.filter = make_box_filter();
   PerspectiveSettings camera;
