@@ -7,6 +7,8 @@
 #include <embree4/rtcore.h>
 #endif
 
+#include <algorithm>
+#include <array>
 #include <atomic>
 #include <cstdlib>
 #include <string>
@@ -17,8 +19,9 @@
 /// Embree only proposes: whatever single precision could get wrong is decided in double precision
 /// by Shape::intersect. That is, in both kinds of query, candidates near an end of the ray or seen
 /// at a grazing angle; for the nearest hit also the winner; for occlusion those close to an edge of
-/// their primitive. Where double precision rejects what Embree saw at the edge of a primitive, the
-/// neighbour that Embree did not see is looked for by rays shifted sideways (`resolve`).
+/// their primitive. Where double precision rejects what Embree saw at the edge of a primitive, or
+/// where Embree does not see the primitive that the ray starts or ends on, a neighbour may have
+/// been missed, which is looked for by rays shifted sideways (`resolve`).
 namespace fogbow {
 
 namespace {
@@ -35,8 +38,6 @@ constexpr double kShift = 0x1p-13;
 /// Distance from an edge, across the ray, at which Embree may take the wrong side: what rounding
 /// does to origin, direction and vertices.
 constexpr double kEdge = 0x1p-21;
-/// Sideways step to what lies beyond an edge.
-constexpr double kSidestep = 0x1p-19;
 /// Below this cosine the error of Embree's t may exceed the shift.
 constexpr double kGrazing = 0x1p-7;
 /// Longest edge of a triangle over the square root of twice its area, slivers excepted.
@@ -46,6 +47,28 @@ constexpr double kLargest = 1e12, kSmallest = 1e-10;
 
 enum class Purpose : std::uint8_t { Nearest, Occlusion, Resolution };
 
+/// Primitives whose neighbours are to be tried, and where that was done. More than these occur only
+/// where geometry is finer than single precision.
+struct Doubtful {
+  std::size_t count = 0, places = 0;
+  std::array<PrimitiveId, 64> primitives;
+  std::array<Vec3, 64> centers;
+
+  void add(PrimitiveId id) {
+    const auto end = primitives.begin() + count;
+    if (count < primitives.size() && std::find(primitives.begin(), end, id) == end)
+      primitives[count++] = id;
+  }
+  /// False if another place within `radius` was added before.
+  bool add_place(const Vec3& center, double radius) {
+    for (std::size_t i = 0; i < places; ++i)
+      if (length(centers[i] - center) < radius) return false;
+    if (places == centers.size()) return false;
+    centers[places++] = center;
+    return true;
+  }
+};
+
 /// What the callbacks need to know of a query; Embree hands back the address of its first member.
 struct Query {
   EmbreeContext context;
@@ -53,12 +76,15 @@ struct Query {
   const Ray* ray;
   PrimitiveId from, to;
   Purpose purpose;
-  bool uncertain = false;  ///< something was rejected at its edge
-  double base;             ///< t of the true ray where Embree's is 0
-  double first, last;      ///< between these of Embree's t a candidate is far from the ends
-  double edge;             ///< kEdge in world units
+  bool from_missed, to_missed;   ///< Embree did not find this planar end well within its edges
+  std::uint32_t doubts = 0;      ///< how many candidates were rejected at their edges;
+  Doubtful* doubtful = nullptr;  ///< where they are to be listed
+  double base;                   ///< t of the true ray where Embree's is 0
+  double first, last;            ///< between these of Embree's t a candidate is far from the ends
+  double edge;                   ///< kEdge in world units
   Hit best{kInfinity, kNoPrimitive, Vec2(0)};  ///< nearest of those decided in double precision
 
+  bool uncertain() const { return doubts > 0 || from_missed || to_missed; }
   static Query& of(EmbreeContext* context) { return *reinterpret_cast<Query*>(context); }
 };
 
@@ -74,7 +100,10 @@ std::optional<PrimitiveHit> decide(Query& query, PrimitiveId id) {
   auto hit = shape.intersect(id.primitive, ray, id == query.from);
   if (!hit && shape.planar()) {
     const Ray line{ray.o, ray.d, -kInfinity, kInfinity};
-    query.uncertain |= !shape.intersect(id.primitive, line, false);
+    if (!shape.intersect(id.primitive, line, false)) {
+      ++query.doubts;
+      if (query.doubtful) query.doubtful->add(id);
+    }
   }
   return hit;
 }
@@ -114,7 +143,9 @@ void filter(const RTCFilterFunctionNArguments* args) {
   const Facing facing(ray, hit);
   if (id == query.from || id == query.to) {
     args->valid[0] = 0;
-    query.uncertain |= !is_within(query, facing, hit);
+    if (!is_within(query, facing, hit)) return;
+    if (id == query.from) query.from_missed = false;
+    if (id == query.to) query.to_missed = false;
     return;
   }
   if (query.purpose != Purpose::Resolution && is_between(query, facing, ray) &&
@@ -214,6 +245,7 @@ struct Accel::Impl {
   RTCDevice device = nullptr;
   RTCScene scene = nullptr;
   std::vector<const Shape*> shapes;
+  std::vector<char> planar;  ///< of each shape
   std::vector<AnalyticGeometry> analytic;
   std::atomic<std::int64_t> memory{0};
   Bounds bounds;
@@ -274,6 +306,7 @@ struct Accel::Impl {
 
   void attach(std::uint32_t id) {
     const Shape& shape = *shapes[id];
+    planar.push_back(shape.planar());
     RTCGeometry geometry;
     if (shape.primitive_kind() == PrimitiveKind::Analytic) {
       geometry = rtcNewGeometry(device, RTC_GEOMETRY_TYPE_USER);
@@ -302,8 +335,10 @@ struct Accel::Impl {
     rtcReleaseGeometry(geometry);
   }
 
-  /// Embree's version of the query's ray, displaced by `aside`.
-  RTCRay prepare(Query& query, const Vec3& aside) const {
+  bool is_planar(PrimitiveId id) const { return id != kNoPrimitive && planar[id.shape]; }
+
+  /// Embree's version of the query's ray.
+  RTCRay prepare(Query& query) const {
     const Ray& ray = *query.ray;
     const double shift = kShift * magnitude;
     double start = ray.t_min;
@@ -311,8 +346,7 @@ struct Accel::Impl {
     if (length_squared(ray(start) - center) > sqr(4 * radius))
       start = std::fmin(std::fmax(start, dot(center - ray.o, ray.d) - 2 * radius), ray.t_max);
     query.base = start - shift;
-    query.edge = kEdge * magnitude;
-    const Vec3 o = ray(query.base) + aside;
+    const Vec3 o = ray(query.base);
     RTCRay r;
     r.org_x = static_cast<float>(o.x);
     r.org_y = static_cast<float>(o.y);
@@ -338,22 +372,70 @@ struct Accel::Impl {
     query.from = from;
     query.to = to;
     query.purpose = purpose;
+    query.from_missed = is_planar(from);
+    query.to_missed = is_planar(to);
+    query.edge = kEdge * magnitude;
     return query;
   }
 
-  /// The nearest hit when every candidate is decided in double precision, those included that
-  /// Embree sees only from a little aside.
-  std::optional<Hit> resolve(const Ray& ray, PrimitiveId from, PrimitiveId to) const {
-    Query query = make_query(ray, from, to, Purpose::Resolution);
-    const Frame frame(ray.d);
-    const double step = kSidestep * magnitude;
-    for (const Vec2& side : {Vec2(0, 0), Vec2(1, 0), Vec2(-1, 0), Vec2(0, 1), Vec2(0, -1)}) {
-      RTCRayHit rayhit;
-      rayhit.ray = prepare(query, step * (side.x * frame.s + side.y * frame.t));
-      rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
-      rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
-      trace_nearest(scene, query, rayhit);
+  /// Decides on all primitives around a point; `best` keeps the nearest hit.
+  void try_around(Query& query, const Vec3& center, double radius) const {
+    if (!query.doubtful->add_place(center, 0.25 * radius)) return;
+    RTCPointQueryContext context;
+    rtcInitPointQueryContext(&context);
+    const glm::vec3 p(center);
+    RTCPointQuery ball{p.x, p.y, p.z, 0, static_cast<float>(radius)};
+    rtcPointQuery(
+        scene, &ball, &context,
+        [](RTCPointQueryFunctionArguments* args) {
+          Query& q = *static_cast<Query*>(args->userPtr);
+          const PrimitiveId id{args->geomID, args->primID};
+          if (q.shapes[id.shape]->planar() && (id == q.from || id == q.to)) return false;
+          const auto hit = decide(q, id);
+          if (hit && hit->t < q.best.t) q.best = {hit->t, id, hit->local};
+          return false;  // the ball keeps its size
+        },
+        &query);
+  }
+
+  /// Tries what shares the edges of a planar primitive at which the ray passes.
+  void try_neighbours(Query& query, PrimitiveId id) const {
+    const PrimitiveBuffers buffers = shapes[id.shape]->buffers();
+    const std::size_t corners = shapes[id.shape]->primitive_kind() == PrimitiveKind::Quads ? 4 : 3;
+    const Ray& ray = *query.ray;
+    const double reach = 2 * query.edge;
+    const auto corner = [&](std::size_t k) {
+      return Vec3(buffers.vertices[buffers.indices[corners * id.primitive + k % corners]]);
+    };
+    for (std::size_t k = 0; k < corners; ++k) {
+      const Vec3 a = corner(k), edge = corner(k + 1) - a;
+      const Vec3 across = edge - dot(edge, ray.d) * ray.d;
+      const Vec3 r = a - ray.o, aside = r - dot(r, ray.d) * ray.d;
+      if (length(across) < 2 * reach) {  // the ray may run along all of the edge
+        if (length(aside) < 3 * reach)
+          try_around(query, a + 0.5 * edge, 0.5 * length(edge) + reach);
+        continue;
+      }
+      const double s = std::clamp(-dot(aside, across) / length_squared(across), 0.0, 1.0);
+      if (length(aside + s * across) < reach) try_around(query, a + s * edge, 1.5 * reach);
     }
+  }
+
+  /// The nearest hit when all candidates are decided in double precision, and so are the
+  /// neighbours of those in doubt.
+  std::optional<Hit> resolve(const Ray& ray, PrimitiveId from, PrimitiveId to) const {
+    Doubtful doubtful;
+    Query query = make_query(ray, from, to, Purpose::Resolution);
+    query.doubtful = &doubtful;
+    RTCRayHit rayhit;
+    rayhit.ray = prepare(query);
+    rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
+    rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
+    trace_nearest(scene, query, rayhit);
+    if (query.from_missed) doubtful.add(from);
+    if (query.to_missed) doubtful.add(to);
+    // The list grows while the ray is in doubt about neighbours, too.
+    for (std::size_t i = 0; i < doubtful.count; ++i) try_neighbours(query, doubtful.primitives[i]);
     if (query.best.id == kNoPrimitive) return std::nullopt;
     return query.best;
   }
@@ -369,11 +451,11 @@ std::optional<Hit> Accel::intersect(const Ray& ray, PrimitiveId from) const {
   if (!(ray.t_max > ray.t_min)) return std::nullopt;
   Query query = impl_->make_query(ray, from, kNoPrimitive, Purpose::Nearest);
   RTCRayHit rayhit;
-  rayhit.ray = impl_->prepare(query, Vec3(0));
+  rayhit.ray = impl_->prepare(query);
   rayhit.hit.geomID = RTC_INVALID_GEOMETRY_ID;
   rayhit.hit.instID[0] = RTC_INVALID_GEOMETRY_ID;
   trace_nearest(impl_->scene, query, rayhit);
-  if (query.uncertain) return impl_->resolve(ray, from, kNoPrimitive);
+  if (query.uncertain()) return impl_->resolve(ray, from, kNoPrimitive);
   if (rayhit.hit.geomID == RTC_INVALID_GEOMETRY_ID) return std::nullopt;
   const PrimitiveId id{rayhit.hit.geomID, rayhit.hit.primID};
   if (query.best.id == id) return query.best;
@@ -388,10 +470,10 @@ bool Accel::occluded(const Vec3& a, const Vec3& b, PrimitiveId from, PrimitiveId
   const Ray ray{a, (b - a) / distance, 0, distance};
   check_ray(ray);
   Query query = impl_->make_query(ray, from, to, Purpose::Occlusion);
-  RTCRay embree_ray = impl_->prepare(query, Vec3(0));
+  RTCRay embree_ray = impl_->prepare(query);
   trace_occlusion(impl_->scene, query, embree_ray);
   if (embree_ray.tfar < 0) return true;
-  return query.uncertain && impl_->resolve(ray, from, to).has_value();
+  return query.uncertain() && impl_->resolve(ray, from, to).has_value();
 }
 
 Bounds Accel::bounds() const { return impl_->bounds; }

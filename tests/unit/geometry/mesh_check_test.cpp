@@ -1,0 +1,146 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/geometry/mesh_check.h"
+
+#include <gtest/gtest.h>
+
+#include "tests/helpers/statistics.h"
+#include "tests/unit/geometry/shape_cases.h"
+
+namespace fogbow {
+namespace {
+
+using testing::mesh_data;
+using Kind = BoundaryDefect::Kind;
+
+BoundaryGroup group_of(std::initializer_list<std::shared_ptr<const Shape>> shapes) {
+  std::vector<const Shape*> list;
+  for (const auto& shape : shapes) list.push_back(shape.get());
+  return BoundaryGroup(list);
+}
+
+TriangleMeshData box(double half, const Vec3& center = Vec3(0)) {
+  return mesh_data(*make_cube(Transform::translate(center) * Transform::scale(Vec3(half))));
+}
+
+std::shared_ptr<const Shape> cube(double half, const Vec3& center = Vec3(0), bool flip = false) {
+  return make_cube(Transform::translate(center) * Transform::scale(Vec3(half)), flip);
+}
+
+void expect_one(const BoundaryGroup& group, Kind kind, const std::string& message) {
+  ASSERT_EQ(group.defects().size(), 1u);
+  EXPECT_EQ(group.defects()[0].kind, kind);
+  EXPECT_EQ(group.defects()[0].message, message);
+}
+
+TEST(Boundary, OfEveryClosedShapeIsSound) {
+  for (const auto& c : testing::convex_cases(2, Vec3(1, 2, 3))) {
+    const BoundaryGroup group = group_of({c.shape});
+    EXPECT_TRUE(group.defects().empty()) << c.name << ": " << group.defects()[0].message;
+    EXPECT_TRUE(group.closed()) << c.name;
+  }
+}
+
+TEST(Boundary, HasTheVolumeOfItsShape) {
+  EXPECT_DOUBLE_EQ(group_of({make_sphere(Vec3(1), 2)}).volume(), 32 * kPi / 3);
+  EXPECT_NEAR(
+      group_of({make_cube(Transform::translate({5, 5, 5}) * Transform::scale({1, 2, 3}))}).volume(),
+      48, 1e-12);
+  EXPECT_NEAR(group_of({make_mesh(box(1)), make_mesh(box(0.5, {3, 0, 0}))}).volume(), 9, 1e-12);
+  // A hollow: the inner boundary faces inwards.
+  EXPECT_NEAR(group_of({cube(1), cube(0.5, Vec3(0), true)}).volume(), 7, 1e-12);
+  EXPECT_NEAR(group_of({make_sphere(Vec3(0), 2), make_sphere(Vec3(0), 1, true)}).volume(),
+              28 * kPi / 3, 1e-12);
+}
+
+TEST(Boundary, WithoutALidIsOpen) {
+  TriangleMeshData data = box(1);
+  data.triangles.pop_back();
+  const BoundaryGroup group = group_of({cube(1, {5, 0, 0}), make_mesh(data)});
+  EXPECT_FALSE(group.closed());
+  expect_one(group, Kind::Open, "3 border edges");
+  EXPECT_EQ(group.defects()[0].shape, 1u);
+  expect_one(group_of({make_rectangle(Transform())}), Kind::Open, "4 border edges");
+}
+
+TEST(Boundary, WithAFlippedTriangleIsInconsistent) {
+  TriangleMeshData data = box(1);
+  std::swap(data.triangles[3][0], data.triangles[3][1]);
+  const BoundaryGroup group = group_of({make_mesh(data)});
+  EXPECT_TRUE(group.closed());
+  EXPECT_NEAR(group.volume(), 8, 1e-12);
+  expect_one(group, Kind::InconsistentOrientation,
+             "3 edges between triangles of opposite orientation");
+}
+
+TEST(Boundary, TurnedInsideOutIsNoticed) {
+  expect_one(group_of({cube(1, Vec3(0), true)}), Kind::InsideOut, "1 closed piece is inside out");
+  expect_one(group_of({make_sphere(Vec3(0), 1, true)}), Kind::InsideOut, "1 sphere is inside out");
+  // The inner wall of a hollow that faces outwards.
+  const BoundaryGroup hollow = group_of({cube(1), cube(0.5)});
+  expect_one(hollow, Kind::InsideOut, "1 closed piece is inside out");
+  EXPECT_EQ(hollow.defects()[0].shape, 1u);
+  const BoundaryGroup spheres = group_of({make_sphere(Vec3(0), 2), make_sphere(Vec3(0), 1)});
+  expect_one(spheres, Kind::InsideOut, "1 sphere is inside out");
+  EXPECT_EQ(spheres.defects()[0].shape, 1u);
+}
+
+TEST(Boundary, ThatMeetsItselfIsNoticed) {
+  const BoundaryGroup boxes = group_of({cube(1), cube(1, Vec3(0.5, 0.6, 0.7))});
+  ASSERT_EQ(boxes.defects().size(), 2u);
+  for (const auto& defect : boxes.defects()) {
+    EXPECT_TRUE(defect.kind == Kind::SelfIntersecting || defect.kind == Kind::InsideOut);
+  }
+  EXPECT_EQ(boxes.defects()[0].kind, Kind::SelfIntersecting);
+  expect_one(group_of({make_sphere(Vec3(0), 1), make_sphere({1.5, 0, 0}, 1)}),
+             Kind::SelfIntersecting, "1 other sphere meets its surface");
+}
+
+TEST(Boundary, WithAFinIsNoManifold) {
+  TriangleMeshData data = box(1);
+  data.positions.push_back({3, 3, 3});
+  const auto [a, b, c] = data.triangles[0];
+  data.triangles.push_back({a, b, 8});
+  const BoundaryGroup group = group_of({make_mesh(data)});
+  bool found = false;
+  for (const auto& defect : group.defects()) found |= defect.kind == Kind::NonManifold;
+  EXPECT_TRUE(found);
+  EXPECT_FALSE(group.closed());
+}
+
+TEST(Boundary, MadeOfSeveralShapesIsWelded) {
+  // Six rectangles around a cube, placed with the rounding of a text file.
+  std::vector<std::shared_ptr<const Shape>> walls;
+  for (int axis = 0; axis < 3; ++axis)
+    for (const double side : {-1.0, 1.0}) {
+      Mat4 m(0.0);
+      m[0][(axis + 1) % 3] = side;
+      m[1][(axis + 2) % 3] = 1;
+      m[2][axis] = side;
+      m[3] = Vec4(0, 0, 0, 1);
+      m[3][axis] = side * (1 + 1e-7 * axis);
+      walls.push_back(make_rectangle(Transform(m)));
+    }
+  const BoundaryGroup group =
+      group_of({walls[0], walls[1], walls[2], walls[3], walls[4], walls[5]});
+  EXPECT_TRUE(group.defects().empty()) << group.defects()[0].message;
+  EXPECT_TRUE(group.closed());
+  EXPECT_NEAR(group.volume(), 8, 1e-5);
+}
+
+TEST(Boundary, ContainsWhatIsInside) {
+  const auto hollow_boxes = group_of({cube(1), cube(0.5, Vec3(0), true)});
+  const auto hollow_spheres =
+      group_of({make_sphere(Vec3(0), 1), make_sphere(Vec3(0.1, 0, 0), 0.5, true)});
+  Rng rng(testing::suite_seed(), RngDomain::Test, 20, 0);
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = 2.4 * uniform3(rng) - 1.2;
+    const double reach = max_component(glm::abs(p));
+    wrong += hollow_boxes.contains(p) != (reach < 1 && reach > 0.5);
+    wrong += hollow_spheres.contains(p) != (length(p) < 1 && length(p - Vec3(0.1, 0, 0)) > 0.5);
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+}  // namespace
+}  // namespace fogbow

@@ -1,0 +1,65 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <string>
+#include <vector>
+
+#include "core/geometry/shapes.h"
+#include "core/math/random.h"
+#include "core/math/warp.h"
+
+namespace fogbow::testing {
+
+struct ShapeCase {
+  std::string name;
+  std::shared_ptr<const Shape> shape;
+};
+
+inline Transform skewed(double scale, const Vec3& offset) {
+  Mat4 shear(1.0);
+  shear[1][0] = 0.4;
+  return Transform::translate(offset) * Transform::rotate({1, 2, 3}, 37) * Transform(shear) *
+         Transform::scale(scale * Vec3(1, 0.6, 1.7));
+}
+
+inline TriangleMeshData mesh_data(const Shape& shape) {
+  Tessellation t = shape.tessellate();
+  return {std::move(t.vertices), {}, {}, std::move(t.triangles)};
+}
+
+/// An ellipsoid of triangles, skewed, with smooth normals.
+inline TriangleMeshData ellipsoid_data(double scale, const Vec3& offset) {
+  TriangleMeshData data = mesh_data(*make_sphere(Vec3(0), 1));
+  const Transform to_world = skewed(scale, offset);
+  for (Vec3& p : data.positions) p = to_world.point(p);
+  data.normals = vertex_normals(data);
+  return data;
+}
+
+/// Convex closed surfaces, a few units of `scale` across, around `offset`.
+inline std::vector<ShapeCase> convex_cases(double scale, const Vec3& offset) {
+  const auto cube = make_cube(skewed(scale, offset));
+  return {{"sphere", make_sphere(offset, 1.3 * scale)},
+          {"cube", cube},
+          {"mesh box", make_mesh(mesh_data(*cube))},
+          {"mesh ellipsoid", make_mesh(ellipsoid_data(scale, offset))}};
+}
+
+inline std::vector<ShapeCase> all_cases(double scale, const Vec3& offset) {
+  std::vector<ShapeCase> cases = convex_cases(scale, offset);
+  cases.push_back({"rectangle", make_rectangle(skewed(scale, offset))});
+  cases.push_back(
+      {"mirrored rectangle", make_rectangle(skewed(scale, offset) * Transform::scale({-1, 1, 1}))});
+  cases.push_back({"flipped cube", make_cube(skewed(scale, offset), true)});
+  cases.push_back({"flipped sphere", make_sphere(offset, 0.7 * scale, true)});
+  TriangleMeshData faceted = ellipsoid_data(scale, offset);
+  faceted.normals.clear();
+  cases.push_back({"faceted mesh", make_mesh(std::move(faceted))});
+  return cases;
+}
+
+/// 10^x with x uniform on [from, to].
+inline double log_uniform(Rng& rng, double from, double to) {
+  return std::pow(10, from + (to - from) * rng.uniform());
+}
+
+}  // namespace fogbow::testing

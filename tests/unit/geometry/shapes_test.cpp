@@ -1,0 +1,270 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include <gtest/gtest.h>
+
+#include <map>
+
+#include "tests/helpers/statistics.h"
+#include "tests/unit/geometry/shape_cases.h"
+
+namespace fogbow {
+namespace {
+
+using testing::all_cases;
+using testing::ShapeCase;
+using testing::suite_seed;
+
+constexpr double kScale = 2.5;
+const Vec3 kOffset(1, -2, 0.5);
+
+double tessellated_area(const Shape& shape) {
+  const Tessellation soup = shape.tessellate();
+  double sum = 0;
+  for (const auto& [a, b, c] : soup.triangles)
+    sum += 0.5 *
+           length(cross(soup.vertices[b] - soup.vertices[a], soup.vertices[c] - soup.vertices[a]));
+  return sum;
+}
+
+TEST(Shapes, AreaIsThatOfTheTessellation) {
+  for (const ShapeCase& c : all_cases(kScale, kOffset)) {
+    const bool curved = c.shape->primitive_kind() == PrimitiveKind::Analytic;
+    const double area = tessellated_area(*c.shape);
+    EXPECT_NEAR(c.shape->area() / area, 1, curved ? 0.01 : 1e-12) << c.name;
+  }
+  EXPECT_DOUBLE_EQ(make_sphere(kOffset, 2)->area(), 16 * kPi);
+  EXPECT_DOUBLE_EQ(make_cube(Transform::scale({1, 2, 3}))->area(), 8 * (2 + 3 + 6));
+  EXPECT_DOUBLE_EQ(make_rectangle(Transform::scale({1, 2, 3}))->area(), 8);
+}
+
+/// Which cell of equal or known area a point lies in, from its position alone.
+struct Cells {
+  std::vector<double> share;
+  std::function<std::size_t(const SurfacePoint&)> of;
+};
+
+Cells sphere_cells() {
+  constexpr int kRings = 16, kSectors = 16;
+  return {
+      std::vector<double>(kRings * kSectors, 1.0 / (kRings * kSectors)), [](const SurfacePoint& x) {
+        const Vec3 n = normalize(x.position - kOffset);
+        const int ring = std::min(static_cast<int>((n.z + 1) / 2 * kRings), kRings - 1);
+        const double turn = std::atan2(n.y, n.x) / (2 * kPi) + 0.5;
+        return static_cast<std::size_t>(ring * kSectors +
+                                        std::min(static_cast<int>(turn * kSectors), kSectors - 1));
+      }};
+}
+
+/// The triangles of the tessellation, each cut in four at the middles of its edges.
+Cells triangle_cells(const Shape& shape) {
+  const auto soup = std::make_shared<Tessellation>(shape.tessellate());
+  const std::size_t per_primitive = soup->triangles.size() / shape.primitive_count();
+  Cells cells;
+  for (const auto& [a, b, c] : soup->triangles) {
+    const double area = 0.5 * length(cross(soup->vertices[b] - soup->vertices[a],
+                                           soup->vertices[c] - soup->vertices[a]));
+    cells.share.insert(cells.share.end(), 4, area / 4 / tessellated_area(shape));
+  }
+  cells.of = [soup, per_primitive](const SurfacePoint& x) -> std::size_t {
+    std::size_t best = 0;
+    double best_inside = -kInfinity;
+    for (std::size_t k = 0; k < per_primitive; ++k) {
+      const std::size_t t = x.primitive * per_primitive + k;
+      const Vec3 &a = soup->vertices[soup->triangles[t][0]],
+                 &b = soup->vertices[soup->triangles[t][1]],
+                 &c = soup->vertices[soup->triangles[t][2]];
+      const Vec3 n = cross(b - a, c - a);
+      const auto weight = [&](const Vec3& p, const Vec3& q) {
+        return dot(n, cross(q - p, x.position - p)) / dot(n, n);
+      };
+      const Vec3 bary(weight(b, c), weight(c, a), weight(a, b));
+      const double inside = std::fmin(bary.x, std::fmin(bary.y, bary.z));
+      if (inside <= best_inside) continue;
+      best_inside = inside;
+      best = 4 * t + (bary.x > 0.5 ? 0 : bary.y > 0.5 ? 1 : bary.z > 0.5 ? 2 : 3);
+    }
+    EXPECT_GT(best_inside, -1e-12);
+    return best;
+  };
+  return cells;
+}
+
+TEST(Shapes, SamplesAreUniform) {
+  const auto cases = all_cases(kScale, kOffset);
+  const double level = testing::sidak(testing::kSuiteFalseAlarm, static_cast<int>(cases.size()));
+  for (const ShapeCase& c : cases) {
+    const Cells cells = c.shape->primitive_kind() == PrimitiveKind::Analytic
+                            ? sphere_cells()
+                            : triangle_cells(*c.shape);
+    constexpr int kSamples = 200000;
+    std::vector<std::uint64_t> counts(cells.share.size(), 0);
+    std::vector<double> expected;
+    for (const double share : cells.share) expected.push_back(kSamples * share);
+    Rng rng(suite_seed(), RngDomain::Test, 10, 0);
+    for (int i = 0; i < kSamples; ++i) ++counts[cells.of(c.shape->sample(uniform2(rng)))];
+    EXPECT_GT(testing::chi2_test(counts, expected), level) << c.name;
+  }
+}
+
+TEST(Shapes, InvertIsTheInverseOfSample) {
+  for (const ShapeCase& c : all_cases(kScale, kOffset)) {
+    Rng rng(suite_seed(), RngDomain::Test, 11, 0);
+    for (int i = 0; i < 5000; ++i) {
+      const Vec2 u = uniform2(rng);
+      const SurfacePoint x = c.shape->sample(u);
+      const Vec2 back = c.shape->invert(x);
+      ASSERT_TRUE(back.x >= 0 && back.x < 1 && back.y >= 0 && back.y < 1);
+      EXPECT_LT(length(Vec3(back - u, 0)), 1e-10) << c.name;
+      const SurfacePoint again = c.shape->sample(back);
+      EXPECT_EQ(again.primitive, x.primitive) << c.name;
+      EXPECT_LT(length(again.position - x.position), 1e-10 * kScale) << c.name;
+    }
+  }
+}
+
+TEST(Shapes, PointsCarryConsistentFrames) {
+  for (const ShapeCase& c : all_cases(kScale, kOffset)) {
+    Rng rng(suite_seed(), RngDomain::Test, 12, 0);
+    for (int i = 0; i < 2000; ++i) {
+      const SurfacePoint x = c.shape->sample(uniform2(rng));
+      EXPECT_NEAR(length(x.n_g), 1, 1e-14);
+      EXPECT_NEAR(length(x.shading.n), 1, 1e-14);
+      EXPECT_GT(dot(x.n_g, x.shading.n), 0) << c.name;
+      const SurfaceDerivatives d = c.shape->derivatives(x);
+      EXPECT_NEAR(dot(normalize(d.dp_du), x.n_g), 0, 1e-13) << c.name;
+      EXPECT_NEAR(dot(normalize(d.dp_dv), x.n_g), 0, 1e-13) << c.name;
+    }
+  }
+}
+
+TEST(Shapes, NormalsPointOutwardsUnlessFlipped) {
+  Rng rng(suite_seed(), RngDomain::Test, 13, 0);
+  for (const ShapeCase& c : all_cases(kScale, kOffset)) {
+    if (c.name.find("rectangle") != std::string::npos) continue;
+    const double side = c.name.find("flipped") == 0 ? -1 : 1;
+    for (int i = 0; i < 500; ++i) {
+      const SurfacePoint x = c.shape->sample(uniform2(rng));
+      EXPECT_GT(side * dot(x.n_g, x.position - kOffset), 0) << c.name;
+    }
+  }
+  // The normal of a rectangle is that of its image, mirrored or not.
+  for (const Vec3& s : {Vec3(1), Vec3(-1, 1, 1), Vec3(1, 1, -1)}) {
+    const auto rectangle = make_rectangle(Transform::scale(s));
+    EXPECT_EQ(rectangle->sample(Vec2(0.5)).n_g, Vec3(0, 0, s.z));
+    EXPECT_EQ(make_rectangle(Transform::scale(s), true)->sample(Vec2(0.5)).n_g, Vec3(0, 0, -s.z));
+  }
+}
+
+/// Moves by (du, dv) in the coordinates that the derivatives refer to.
+SurfacePoint moved(const Shape& shape, const SurfacePoint& x, const Vec2& step) {
+  if (shape.primitive_kind() != PrimitiveKind::Analytic)
+    return shape.surface_point(x.primitive, x.local + step);
+  const double angle = length(Vec3(step, 0)) /
+                       (0.5 * length(shape.bounds().hi - shape.bounds().lo) / std::sqrt(3.0));
+  const Vec3 radial = x.position - shape.bounds().center();
+  const Vec3 along = normalize(step.x * x.shading.s + step.y * x.shading.t);
+  const Vec3 p = std::cos(angle) * radial + std::sin(angle) * length(radial) * along;
+  // Found by a ray, so that nothing of the shape's own coordinates is used.
+  const Vec3 outside = shape.bounds().center() + 2.0 * p;
+  const auto hit = shape.intersect(0, {outside, -normalize(p)}, false);
+  return shape.surface_point(0, hit.value().local);
+}
+
+TEST(Shapes, DerivativesAreThoseOfFiniteDifferences) {
+  for (const ShapeCase& c : all_cases(kScale, kOffset)) {
+    const bool curved = c.shape->primitive_kind() == PrimitiveKind::Analytic;
+    Rng rng(suite_seed(), RngDomain::Test, 14, 0);
+    const double h = 1e-5;
+    double largest_turn = 0;
+    for (int i = 0; i < 300; ++i) {
+      const SurfacePoint x = c.shape->sample(Vec2(0.05) + 0.9 * uniform2(rng));
+      const SurfaceDerivatives d = c.shape->derivatives(x);
+      const auto difference = [&](const Vec2& step, bool normal) {
+        const SurfacePoint a = moved(*c.shape, x, -h * step), b = moved(*c.shape, x, h * step);
+        return (normal ? b.shading.n - a.shading.n : b.position - a.position) / (2 * h);
+      };
+      const double tolerance = 1e-8 * (curved ? 1 : length(d.dp_du) + 1);
+      EXPECT_LT(length(difference({1, 0}, false) - d.dp_du), tolerance) << c.name;
+      EXPECT_LT(length(difference({0, 1}, false) - d.dp_dv), tolerance) << c.name;
+      EXPECT_LT(length(difference({1, 0}, true) - d.dn_du), tolerance) << c.name;
+      EXPECT_LT(length(difference({0, 1}, true) - d.dn_dv), tolerance) << c.name;
+      largest_turn = std::fmax(largest_turn, length(d.dn_du));
+    }
+    const bool flat = c.name.find("cube") != std::string::npos ||
+                      c.name.find("rectangle") != std::string::npos || c.name == "mesh box" ||
+                      c.name == "faceted mesh";
+    EXPECT_EQ(largest_turn > 0.01, !flat) << c.name;
+  }
+}
+
+TEST(Sphere, ResolvesBothPoles) {
+  const auto sphere = make_sphere(Vec3(0), 1);
+  for (const double side : {-1.0, 1.0})
+    for (const double x : {1e-3, 1e-6, 1e-9, 1e-12, 0.0}) {
+      const auto hit = sphere->intersect(0, {{x, 0, 3 * side}, {0, 0, -side}}, false);
+      ASSERT_TRUE(hit);
+      const SurfacePoint p = sphere->surface_point(0, hit->local);
+      EXPECT_NEAR(p.position.x, x, 1e-15 * x) << x;
+      EXPECT_NEAR(p.position.z, side, 1e-6);
+    }
+}
+
+TEST(Sphere, LeavingExcludesTheRootAtZeroAndNoOther) {
+  const auto sphere = make_sphere({3, 2, 1}, 0.7);
+  Rng rng(suite_seed(), RngDomain::Test, 15, 0);
+  for (int i = 0; i < 100000; ++i) {
+    const SurfacePoint x = sphere->sample(uniform2(rng));
+    const double sine = testing::log_uniform(rng, -9, 0);
+    const double phi = 2 * kPi * rng.uniform(), r = std::sqrt(1 - sine * sine);
+    const Vec3 w = x.shading.to_world({r * std::cos(phi), r * std::sin(phi), -sine});
+    const auto chord = sphere->intersect(0, {x.position, w}, true);
+    ASSERT_TRUE(chord);
+    EXPECT_NEAR(chord->t, 2 * 0.7 * sine, 1e-14);
+    EXPECT_FALSE(sphere->intersect(0, {x.position, w - 2 * dot(w, x.n_g) * x.n_g}, true));
+  }
+}
+
+TEST(Mesh, TurnsShadingNormalsToTheGeometricSide) {
+  TriangleMeshData data{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {{0, 1, 2}}};
+  data.normals = {{0, 0, -1}, normalize(Vec3(0.5, 0, -1)), {0, 0, -1}};
+  const auto mesh = make_mesh(data);
+  const SurfacePoint x = mesh->surface_point(0, {0.3, 0.3});
+  EXPECT_EQ(x.n_g, Vec3(0, 0, 1));
+  EXPECT_GT(x.shading.n.z, 0);
+  EXPECT_LT(x.shading.n.x, 0);
+}
+
+TEST(Mesh, RefusesWhatIsNoMesh) {
+  const TriangleMeshData good{{{0, 0, 0}, {1, 0, 0}, {0, 1, 0}}, {}, {}, {{0, 1, 2}}};
+  EXPECT_NO_THROW(make_mesh(good));
+  TriangleMeshData bad = good;
+  bad.triangles[0][2] = 3;
+  EXPECT_THROW(make_mesh(bad), std::domain_error);
+  bad = good;
+  bad.positions[1].y = std::nan("");
+  EXPECT_THROW(make_mesh(bad), std::domain_error);
+  bad = good;
+  bad.normals = {{0, 0, 1}};
+  EXPECT_THROW(make_mesh(bad), std::domain_error);
+  bad = good;
+  bad.uvs = {Vec2(0), Vec2(0), Vec2(kInfinity, 0)};
+  EXPECT_THROW(make_mesh(bad), std::domain_error);
+  bad = good;
+  bad.positions[2] = {2, 0, 0};
+  EXPECT_THROW(make_mesh(bad), std::domain_error);
+}
+
+TEST(Mesh, DropsTrianglesWithoutArea) {
+  TriangleMeshData data{
+      {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {2, 0, 0}}, {}, {}, {{0, 1, 2}, {0, 1, 3}}};
+  EXPECT_EQ(make_mesh(data)->primitive_count(), 1u);
+}
+
+/// A corner of a cube in a fan of unequal triangles: the normal is the diagonal all the same.
+TEST(Mesh, VertexNormalsAreWeightedByAngle) {
+  TriangleMeshData data{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}, {}};
+  data.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
+  EXPECT_LT(length(vertex_normals(data)[0] - normalize(Vec3(1))), 1e-15);
+}
+
+}  // namespace
+}  // namespace fogbow
