@@ -55,7 +55,7 @@ class Render(CliTest):
         self.write("apart.xml", scene_text(more=MESH_ELSEWHERE))
         self.expect(0, "check", "apart.xml")
         self.expect(4, "render", "apart.xml", "--sandbox-paths", message="outside")
-        self.expect(3, "render", "scene.xml", "--crop", "10,0,10,4", message="crop")
+        self.expect(2, "render", "scene.xml", "--crop", "10,0,10,4", message="crop")
         self.assertEqual(self.files(), ["apart.xml", "dark.xml", "scene.xml", "unlit.xml"])
 
     def test_size_crop_and_definitions(self):
