@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include <algorithm>
+#include <numbers>
 #include <stdexcept>
 #include <vector>
 
@@ -46,6 +46,29 @@ std::optional<BallCaustic::Landing> BallCaustic::trace(double incidence, int ord
   return Landing{r, dr, cos_psi, weight};
 }
 
+double BallCaustic::solid_angle_density(double incidence) const {
+  return sqr(radius / light_distance) * std::sin(incidence) * std::cos(incidence) /
+         std::cos(angle_at_light(incidence));
+}
+
+void BallCaustic::visit_landings(
+    int order, int rings, int azimuths,
+    const std::function<void(double x, double y, double flux)>& visit) const {
+  const double step = kPi / 2 / rings;
+  for (int ring = 0; ring < rings; ++ring) {
+    const double incidence = (ring + 0.5) * step;
+    const std::optional<Landing> landing = trace(incidence, order);
+    if (!landing) continue;
+    const double flux =
+        intensity * landing->weight * solid_angle_density(incidence) * step * 2 * kPi / azimuths;
+    const double turn = std::fmod(ring * std::numbers::phi, 1);  // no two rings aligned
+    for (int k = 0; k < azimuths; ++k) {
+      const double azimuth = 2 * kPi * (k + turn) / azimuths;
+      visit(landing->r * std::cos(azimuth), landing->r * std::sin(azimuth), flux);
+    }
+  }
+}
+
 double BallCaustic::flux_within(double reach, int order) const {
   const auto beyond = [&](double i) {
     const std::optional<Landing> landing = trace(i, order);
@@ -57,14 +80,8 @@ double BallCaustic::flux_within(double reach, int order) const {
   double sum = 0;
   for (std::size_t k = 0; k + 1 < ends.size(); ++k) {
     if (ends[k + 1] <= ends[k] || beyond((ends[k] + ends[k + 1]) / 2) >= 0) continue;
-    sum += integrate(
-        [&](double i) {
-          // sinα dα
-          const double measure = sqr(radius / light_distance) * std::sin(i) * std::cos(i) /
-                                 std::cos(angle_at_light(i));
-          return trace(i, order)->weight * measure;
-        },
-        ends[k], ends[k + 1]);
+    sum += integrate([&](double i) { return trace(i, order)->weight * solid_angle_density(i); },
+                     ends[k], ends[k + 1]);
   }
   return 2 * kPi * intensity * sum;
 }
@@ -93,9 +110,7 @@ double BallCaustic::irradiance(double r, int order) const {
     for (const double i : find_roots(miss, 0, kPi / 2, kScan)) {
       const std::optional<Landing> landing = trace(i, order);
       if (!landing || std::abs(landing->r - side) > 1e-6 * (std::abs(side) + radius)) continue;
-      const double alpha = angle_at_light(i);
-      const double dalpha = radius * std::cos(i) / (light_distance * std::cos(alpha));
-      sum += landing->weight * std::sin(alpha) * dalpha / (r * std::abs(landing->dr));
+      sum += landing->weight * solid_angle_density(i) / (r * std::abs(landing->dr));
     }
   }
   return intensity * sum;

@@ -145,6 +145,18 @@ Vec3 PixelGrid::direction(double x, double y) const {
       Vec3((2 * x / width - 1) * half, (2 * y / height - 1) * half * height / width, 1));
 }
 
+Vec2 PixelGrid::raster(const Vec3& direction) const {
+  const double half = std::tan(fov_x_degrees * kPi / 360);
+  return {(direction.x / direction.z / half + 1) * width / 2,
+          (direction.y / direction.z / (half * height / width) + 1) * height / 2};
+}
+
+double PixelGrid::importance(const Vec3& direction) const {
+  const double side = 2 * std::tan(fov_x_degrees * kPi / 360) / width;
+  const double cos_axis = direction.z / length(direction);
+  return 1 / (side * side * cos_axis * cos_axis * cos_axis);
+}
+
 double PixelGrid::pixel_mean(int x, int y,
                              const std::function<double(const Vec3& direction)>& radiance,
                              int n) const {

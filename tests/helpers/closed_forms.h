@@ -87,6 +87,8 @@ struct BallCaustic {
   /// Angle from the axis under which that ray leaves the light: sin α = radius/light_distance · sin
   /// i.
   double angle_at_light(double incidence) const;
+  /// sinα dα/di: solid angle at the light per incidence and azimuth.
+  double solid_angle_density(double incidence) const;
 
   /// Flux on the disk r < `reach` of one order. Error 1e-9 of the flux that meets the ball.
   double flux_within(double reach, int order) const;
@@ -98,6 +100,11 @@ struct BallCaustic {
   /// Irradiance at r > 0: Σ I w sinα (dα/di) / (r |dr/di|) over all i that land there; infinite on
   /// a fold.
   double irradiance(double r, int order) const;
+  /// Light tracing without chance: the middles of `rings` × `azimuths` cells of the lit face, each
+  /// with where it lands and the flux of its cell. Sums over a region of the plane or of a picture
+  /// converge as 1/rings.
+  void visit_landings(int order, int rings, int azimuths,
+                      const std::function<void(double x, double y, double flux)>& visit) const;
   /// Of the light that misses the ball, the ball's shadow included.
   double direct_irradiance(double r) const;
 };
@@ -128,7 +135,13 @@ struct PixelGrid {
 
   /// Unit direction through a raster position.
   Vec3 direction(double x, double y) const;
-  /// Box-filtered pixel by n × n Gauss–Legendre nodes; for radiance that is smooth inside the pixel.
+  /// The raster position of a direction with z > 0.
+  Vec2 raster(const Vec3& direction) const;
+  /// Response of the mean of the pixel through which the direction passes, per solid angle:
+  /// 1/(pixel area · cos³).
+  double importance(const Vec3& direction) const;
+  /// Box-filtered pixel by n × n Gauss–Legendre nodes; for radiance that is smooth inside the
+  /// pixel.
   double pixel_mean(int x, int y, const std::function<double(const Vec3& direction)>& radiance,
                     int n = 8) const;
 };

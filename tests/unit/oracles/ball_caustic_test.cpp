@@ -113,6 +113,19 @@ TEST(BallCaustic, LightIsNeitherLostNorMade) {
               2 * kPi * 3 * (1 - 2.6 / std::hypot(2.6, 2.0)), 1e-7);
 }
 
+TEST(BallCaustic, LandingsSumToTheFluxOfAnyDisk) {
+  for (const int order : {BallCaustic::kOutside, 0, 1}) {
+    for (const double reach : {0.3, 1.1, 3.0}) {
+      double sum = 0;
+      kBall.visit_landings(order, 20000, 3, [&](double x, double y, double flux) {
+        if (std::hypot(x, y) < reach) sum += flux;
+      });
+      const double exact = kBall.flux_within(reach, order);
+      EXPECT_NEAR(sum, exact, 3e-4 * exact + 1e-9) << order << ' ' << reach;
+    }
+  }
+}
+
 TEST(BallCaustic, DirectLightLeavesAShadow) {
   const double limb = std::asin(kBall.radius / kBall.light_distance);
   const double edge = 2.6 * std::tan(limb);

@@ -136,5 +136,17 @@ TEST(PixelGrid, PixelsCoverTheSolidAngleOfThePicture) {
   EXPECT_GT(grid.direction(1, 3.9).y, 0);
 }
 
+TEST(PixelGrid, RasterInvertsDirectionAndImportanceIsItsDensity) {
+  const PixelGrid grid{70, 6, 4};
+  for (const Vec2 p : {Vec2(0.3, 3.9), Vec2(3, 2), Vec2(5.5, 0.2)}) {
+    const Vec3 d = grid.direction(p.x, p.y);
+    EXPECT_NEAR(length(grid.raster(d) - p), 0, 1e-13);
+    const double h = 1e-4;  // dσ of a raster cell by differences
+    const Vec3 du = (grid.direction(p.x + h, p.y) - grid.direction(p.x - h, p.y)) / (2 * h);
+    const Vec3 dv = (grid.direction(p.x, p.y + h) - grid.direction(p.x, p.y - h)) / (2 * h);
+    EXPECT_NEAR(grid.importance(d) * length(cross(du, dv)), 1, 1e-7);
+  }
+}
+
 }  // namespace
 }  // namespace fogbow::testing
