@@ -257,7 +257,8 @@ class PlyParser {
     if (rest.empty()) fail("the file ends too early");
     if (!consume_number(rest, value) ||
         (!rest.empty() && rest[0] != ' ' && rest[0] != '\t' && rest[0] != '\r' && rest[0] != '\n'))
-      fail("expected a finite number, found " + quote(bytes_.substr(at_, bytes_.find_first_of(" \t\r\n", at_) - at_)));
+      fail("expected a finite number, found " +
+           quote(bytes_.substr(at_, bytes_.find_first_of(" \t\r\n", at_) - at_)));
     if (!is_float(type) && value != std::floor(value)) fail("expected a whole number");
     at_ = bytes_.size() - rest.size();
     return value;

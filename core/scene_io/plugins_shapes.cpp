@@ -60,9 +60,9 @@ void fill_normals(TriangleMeshData& mesh) {
   bool missing = mesh.normals.empty();
   for (const Vec3& n : mesh.normals) missing = missing || is_black(n);
   if (!missing) return;
-  std::vector<Vec3> computed = vertex_normals(mesh);
-  if (mesh.normals.empty()) mesh.normals = std::move(computed);
-  for (std::size_t i = 0; i < mesh.normals.size(); ++i)
+  const std::vector<Vec3> computed = vertex_normals(mesh);
+  mesh.normals.resize(computed.size(), Vec3(0));
+  for (std::size_t i = 0; i < computed.size(); ++i)
     if (is_black(mesh.normals[i])) mesh.normals[i] = computed[i];
 }
 

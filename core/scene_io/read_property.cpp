@@ -159,8 +159,10 @@ bool is_value_tag(const std::string& tag) {
 
 Property read_property(const XmlNode& node, Diagnostics& diagnostics) {
   const std::string& name = node.required("name");
-  if (name.empty())
-    throw Error(ErrorKind::Scene, node.where("name"), "the name of a property is empty");
+  constexpr std::size_t kMaxName = 256;
+  if (name.empty() || name.size() > kMaxName)
+    throw Error(ErrorKind::Scene, node.where("name"),
+                "the name of a property is empty or very long");
   if (node.tag != "transform") reject_children(node);
   Property::Value value = read_value(node, diagnostics);
   check_value_attributes(node, diagnostics);

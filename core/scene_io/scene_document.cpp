@@ -34,7 +34,7 @@ SceneDocument::SceneDocument(const std::string& path,
                              FileResolver& files, Diagnostics& diagnostics, const XmlLimits& limits)
     : files_(files), diagnostics_(diagnostics), limits_(limits) {
   for (const auto& [name, value] : definitions) definitions_[name] = {value, false};
-  XmlNode source = load(path, SourceLocation{});
+  XmlNode source = load(path, {path, 0, 0});
   if (source.tag != "scene")
     throw Error(ErrorKind::Scene, source.where(),
                 "expected <scene> as the outermost element, found <" + source.tag + ">");

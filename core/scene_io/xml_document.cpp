@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/scene_io/xml_document.h"
 
-#include <algorithm>
 #include <pugixml.hpp>
 #include <string_view>
 
@@ -39,6 +38,7 @@ class Converter {
       fail(offset, "more than " + std::to_string(limits_.nodes) + " elements");
     XmlNode node;
     node.tag = source.name();
+    if (node.tag.size() > kMaxName) fail(offset, "the name of an element is too long");
     node.file = file_;
     const SourceLocation where = at(offset);
     node.line = where.line;
@@ -65,12 +65,22 @@ class Converter {
         fail(offset, node.attributes.size() >= kMaxAttributes
                          ? "too many attributes"
                          : "attribute " + quote(attribute.name()) + " is given twice");
+      check_names(offset, attribute);
       node.attributes.push_back({attribute.name(), attribute.value(), where.line, where.column});
       const std::size_t open = text_.find_first_of("\"'", offset);
       offset = text_.find(text_[open], open + 1) + 1;
     }
   }
 
+  /// Whatever names something stays short, so that messages do.
+  void check_names(std::size_t offset, const pugi::xml_attribute& attribute) const {
+    const std::string_view name = attribute.name(), value = attribute.value();
+    const bool names = name == "name" || name == "id" || name == "type" || name == "as";
+    if (name.size() > kMaxName || (names && value.size() > kMaxName))
+      fail(offset, "a name of more than " + std::to_string(kMaxName) + " bytes");
+  }
+
+  static constexpr std::size_t kMaxName = 256;
   static constexpr std::size_t kMaxAttributes = 64;
   std::string_view text_;
   LineIndex lines_;
@@ -78,6 +88,23 @@ class Converter {
   const XmlLimits& limits_;
   std::size_t& nodes_;
 };
+
+/// pugixml allocates a record for every element and attribute before we can count them. Those in
+/// comments count, too.
+void refuse_too_many(std::string_view text, const std::string& file, const XmlLimits& limits) {
+  constexpr std::size_t kMaxAttributesPerElement = 16;
+  std::size_t elements = 0, attributes = 0;
+  for (std::size_t at = text.find_first_of("<="); at != std::string_view::npos;
+       at = text.find_first_of("<=", at + 1)) {
+    if (text[at] == '=')
+      ++attributes;
+    else if (at + 1 < text.size() && text[at + 1] != '/' && text[at + 1] != '!')
+      ++elements;
+    if (elements > limits.nodes || attributes > kMaxAttributesPerElement * limits.nodes)
+      throw Error(ErrorKind::Scene, LineIndex(text).locate(file, at),
+                  "more than " + std::to_string(limits.nodes) + " elements");
+  }
+}
 
 }  // namespace
 
@@ -107,12 +134,7 @@ XmlNode parse_xml(const std::string& whole, const std::string& file, const XmlLi
   if (const std::size_t zero = text.find('\0'); zero != std::string_view::npos)
     throw Error(ErrorKind::Scene, LineIndex(text).locate(file, zero),
                 "a null byte; scenes must be UTF-8 text");
-  // pugixml allocates a record for each of these before we could count: refuse first.
-  const auto tags = static_cast<std::size_t>(std::count(text.begin(), text.end(), '<'));
-  const auto attributes = static_cast<std::size_t>(std::count(text.begin(), text.end(), '='));
-  if (tags > 4 * limits.nodes || attributes > 16 * limits.nodes)
-    throw Error(ErrorKind::Scene, {file, 1, 1},
-                "more than " + std::to_string(limits.nodes) + " elements");
+  refuse_too_many(text, file, limits);
 
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(
