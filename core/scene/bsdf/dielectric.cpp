@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/math/warp.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/bsdf/fresnel.h"
 #include "core/scene/bsdf/reflecting.h"
@@ -25,37 +24,33 @@ class Dielectric final : public Bsdf {
   double pdf_sigma(const SurfacePoint&, const Vec3&, const Vec3&) const override { return 0; }
 
   RGB f_dirac(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const override {
-    const double F = refraction(w_light).F;
-    const RGB C = w_light.z * w_eye.z > 0 ? F * reflectance_ : (1 - F) * transmittance_;
+    const Refraction r = refraction(w_light, w_eye);
+    const RGB C = w_light.z * w_eye.z > 0 ? r.F * reflectance_ : r.T * transmittance_;
     return C * sqr(n(w_eye));
   }
   double pdf_dirac(const SurfacePoint&, const Vec3& from, const Vec3& to) const override {
-    const double F = refraction(from).F;
-    return event_probability(F, from.z * to.z > 0) * sqr(n(to)) * std::fabs(to.z);
+    const auto [reflection, transmission] = probabilities(refraction(from, to));
+    const double P = from.z * to.z > 0 ? reflection : transmission;
+    return P * sqr(n(to)) * std::fabs(to.z);
   }
 
-  std::optional<BsdfSample> sample(const SurfacePoint&, const Vec3& from,
+  std::optional<BsdfSample> sample(const SurfacePoint& x, const Vec3& from,
                                    const Vec3& u) const override {
     if (from.z == 0) return std::nullopt;
-    const auto [F, cos_t] = refraction(from);
-    const double P = event_probability(F, true);
-    if (u.x < P) return BsdfSample{reflect_z(from), true, P * sqr(n(from)) * std::fabs(from.z)};
-    const double P_t = event_probability(F, false);
-    if (!(P_t > 0)) return std::nullopt;
+    const Refraction r = refraction(from);
+    const auto [reflection, transmission] = probabilities(r);
+    if (u.x < reflection) return answer(x, from, reflect_z(from));
+    if (!(transmission > 0)) return std::nullopt;
     const double scale = 1 / relative_eta(from);
-    const Vec3 to(-scale * from.x, -scale * from.y, from.z > 0 ? -cos_t : cos_t);
-    return BsdfSample{to, true, P_t * sqr(n(to)) * cos_t};
+    const Vec3 to(-scale * from.x, -scale * from.y, from.z > 0 ? -r.cos_t : r.cos_t);
+    return answer(x, from, to);
   }
   std::optional<Vec3> invert(const SurfacePoint&, const Vec3& from, const Vec3& to, bool dirac,
                              const Vec3& auxiliary) const override {
     if (!dirac) return std::nullopt;
-    const bool reflects = from.z * to.z > 0;
-    const double F = refraction(from).F;
-    if (!(event_probability(F, reflects) > 0)) return std::nullopt;
-    const double P = event_probability(F, true);
-    const double u = reflects ? warp::invert_interval(0, P, auxiliary.x)
-                              : warp::invert_interval(P, 1, auxiliary.x);
-    return Vec3(u, auxiliary.y, auxiliary.z);
+    const auto u = invert_event(probabilities(refraction(from)), from.z * to.z > 0, auxiliary.x);
+    if (!u) return std::nullopt;
+    return Vec3(*u, auxiliary.y, auxiliary.z);
   }
 
   double eta() const override { return eta_; }
@@ -69,10 +64,16 @@ class Dielectric final : public Bsdf {
   Refraction refraction(const Vec3& w) const {
     return fresnel_dielectric(std::fabs(w.z), relative_eta(w));
   }
-  double event_probability(double F, bool reflects) const {
-    const double P = reflection_probability(F, mean_reflectance_, mean_transmittance_);
-    if (reflects) return P;
-    return (1 - F) * mean_transmittance_ > 0 ? 1 - P : 0.0;
+  /// Of the interface between two directions that it joins.
+  Refraction refraction(const Vec3& a, const Vec3& b) const {
+    if (a.z * b.z > 0) return refraction(a);
+    return fresnel_of_pair(std::fabs(a.z), std::fabs(b.z), relative_eta(a));
+  }
+  BsdfSample answer(const SurfacePoint& x, const Vec3& from, const Vec3& to) const {
+    return {to, true, pdf_dirac(x, from, to)};
+  }
+  EventProbabilities probabilities(const Refraction& r) const {
+    return event_probabilities(r, mean_reflectance_, mean_transmittance_);
   }
 
   double eta_;

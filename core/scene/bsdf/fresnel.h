@@ -1,25 +1,32 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <optional>
+
 #include "core/math/vec.h"
+#include "core/math/warp.h"
 
 namespace fogbow {
 
-/// Unpolarized reflectance of a smooth interface, with the cosine on the far side (0 under total
-/// reflection).
+/// At a smooth interface: unpolarized reflectance and transmittance (F + T = 1), and the cosine on
+/// the far side (0 under total reflection).
 struct Refraction {
-  double F, cos_t;
+  double F, T, cos_t;
 };
 
-/// `cos_i` ≥ 0 on the near side, `eta` the far over the near index of refraction.
+/// Of two directions that Snell's law joins, with cosines ≥ 0; `eta` is the far over the near index
+/// of refraction. Symmetric to rounding.
+inline Refraction fresnel_of_pair(double cos_i, double cos_t, double eta) {
+  const double s = 1 / (cos_i + eta * cos_t), p = 1 / (eta * cos_i + cos_t);
+  const double r_s = (cos_i - eta * cos_t) * s, r_p = (eta * cos_i - cos_t) * p;
+  // T by itself, as 1 − F is mostly rounding where F is close to 1.
+  return {0.5 * (r_s * r_s + r_p * r_p), 2 * eta * cos_i * cos_t * (s * s + p * p), cos_t};
+}
+
 inline Refraction fresnel_dielectric(double cos_i, double eta) {
   // η² cos²θ_t = (η² − 1) + cos²θ_i: exact for η = 1, and without cancellation at grazing angles.
   const double q = (eta - 1) * (eta + 1) + cos_i * cos_i;
-  if (q <= 0) return {1, 0};
-  const double eta_cos_t = std::sqrt(q);
-  const double cos_t = eta_cos_t / eta;
-  const double r_s = (cos_i - eta_cos_t) / (cos_i + eta_cos_t);
-  const double r_p = (eta * cos_i - cos_t) / (eta * cos_i + cos_t);
-  return {std::fmin(0.5 * (r_s * r_s + r_p * r_p), 1.0), cos_t};
+  if (q <= 0) return {1, 0, 0};
+  return fresnel_of_pair(cos_i, std::sqrt(q) / eta, eta);
 }
 
 /// Reflectance of a conductor of complex index eta + i k ≠ 0, unpolarized.
@@ -33,11 +40,24 @@ struct ComplexIndex {
 };
 RGB fresnel_conductor(double cos_i, const ComplexIndex& index);
 
-/// Probability of reflection where F and 1 − F are weighted by their tints' means; 0 where both are
-/// black.
-inline double reflection_probability(double F, double reflectance, double transmittance) {
-  const double r = F * reflectance, t = (1 - F) * transmittance;
-  return r > 0 ? r / (r + t) : 0.0;
+/// Probabilities of the two events where F and T are weighted by their tints' means; zero where
+/// both are black.
+struct EventProbabilities {
+  double reflection, transmission;
+};
+inline EventProbabilities event_probabilities(const Refraction& r, double reflectance,
+                                              double transmittance) {
+  const double a = r.F * reflectance, b = r.T * transmittance;
+  if (!(a + b > 0)) return {0, 0};
+  return {a / (a + b), b / (a + b)};
+}
+/// Primary sample of an event, uniform on its interval; nothing where it has none (transmission
+/// below 2⁻⁵³).
+inline std::optional<double> invert_event(const EventProbabilities& P, bool reflects,
+                                          double auxiliary) {
+  const double lo = reflects ? 0 : P.reflection, hi = reflects ? P.reflection : 1;
+  if (!(lo < hi) || !((reflects ? P.reflection : P.transmission) > 0)) return std::nullopt;
+  return warp::invert_interval(lo, hi, auxiliary);
 }
 
 }  // namespace fogbow

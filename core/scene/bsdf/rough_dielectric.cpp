@@ -1,5 +1,4 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/math/warp.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/bsdf/fresnel.h"
 #include "core/scene/bsdf/microfacet.h"
@@ -45,18 +44,14 @@ class RoughDielectric final : public Bsdf {
     double cos_a, cos_b;  ///< |a·h|, |b·h|
     double length2;       ///< |n_a a + n_b b|², of refraction
     bool reflects;
-    double F;
+    Refraction fresnel;
   };
 
   double n(const Vec3& w) const { return w.z > 0 ? 1.0 : eta_; }
   double relative_eta(const Vec3& w) const { return w.z > 0 ? eta_ : 1 / eta_; }
   std::optional<Facet> facet(const Vec3& a, const Vec3& b) const;
-  double reflection_probability(double F) const {
-    return fogbow::reflection_probability(F, mean_reflectance_, mean_transmittance_);
-  }
-  double event_probability(const Facet& m) const {
-    if (m.reflects) return reflection_probability(m.F);
-    return (1 - m.F) * mean_transmittance_ > 0 ? 1 - reflection_probability(m.F) : 0.0;
+  EventProbabilities probabilities(const Refraction& r) const {
+    return event_probabilities(r, mean_reflectance_, mean_transmittance_);
   }
 
   MicrofacetDistribution facets_;
@@ -75,7 +70,11 @@ std::optional<RoughDielectric::Facet> RoughDielectric::facet(const Vec3& a, cons
   // Each direction must see the facet from the side that it sees the surface from.
   const double cos_a = a.z > 0 ? dot(a, h) : -dot(a, h), cos_b = b.z > 0 ? dot(b, h) : -dot(b, h);
   if (!(cos_a > 0 && cos_b > 0)) return std::nullopt;
-  return Facet{h, cos_a, cos_b, length2, reflects, fresnel_dielectric(cos_a, relative_eta(a)).F};
+  const double eta = relative_eta(a);
+  return Facet{
+      h,        cos_a,
+      cos_b,    length2,
+      reflects, reflects ? fresnel_dielectric(cos_a, eta) : fresnel_of_pair(cos_a, cos_b, eta)};
 }
 
 RGB RoughDielectric::f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const {
@@ -83,9 +82,9 @@ RGB RoughDielectric::f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w
   if (!m) return RGB(0);
   const double DG =
       facets_.D(m->h) * facets_.G1(w_light) * facets_.G1(w_eye) / std::fabs(w_light.z * w_eye.z);
-  if (m->reflects) return reflectance_ * (m->F * DG * 0.25);  // eq. 20
+  if (m->reflects) return reflectance_ * (m->fresnel.F * DG * 0.25);  // eq. 20
   return transmittance_ *
-         ((1 - m->F) * DG * m->cos_a * m->cos_b * sqr(n(w_eye)) / m->length2);  // eq. 21
+         (m->fresnel.T * DG * m->cos_a * m->cos_b * sqr(n(w_eye)) / m->length2);  // eq. 21
 }
 
 double RoughDielectric::pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const {
@@ -93,7 +92,8 @@ double RoughDielectric::pdf_sigma(const SurfacePoint&, const Vec3& from, const V
   if (!m) return 0;
   const double visible = facets_.D(m->h) * facets_.G1(from) / std::fabs(from.z);  // over cos_a
   const double jacobian = m->reflects ? 0.25 : m->cos_a * m->cos_b * sqr(n(to)) / m->length2;
-  return event_probability(*m) * visible * jacobian;
+  const auto [reflection, transmission] = probabilities(m->fresnel);
+  return (m->reflects ? reflection : transmission) * visible * jacobian;
 }
 
 std::optional<BsdfSample> RoughDielectric::sample(const SurfacePoint& x, const Vec3& from,
@@ -104,9 +104,9 @@ std::optional<BsdfSample> RoughDielectric::sample(const SurfacePoint& x, const V
   const Vec3 h = side * facets_.sample_visible(side * from, {u.y, u.z});
   const double cos_from = dot(from, h);
   const double eta = relative_eta(from);
-  const auto [F, cos_t] = fresnel_dielectric(cos_from, eta);
-  const bool reflects = u.x < reflection_probability(F);
-  const Vec3 to = reflects ? 2 * cos_from * h - from : (cos_from / eta - cos_t) * h - from / eta;
+  const Refraction r = fresnel_dielectric(cos_from, eta);
+  const bool reflects = u.x < probabilities(r).reflection;
+  const Vec3 to = reflects ? 2 * cos_from * h - from : (cos_from / eta - r.cos_t) * h - from / eta;
   if ((to.z * from.z > 0) != reflects) return std::nullopt;
   const double pdf = pdf_sigma(x, from, to);
   if (!(pdf > 0)) return std::nullopt;
@@ -117,12 +117,11 @@ std::optional<Vec3> RoughDielectric::invert(const SurfacePoint& x, const Vec3& f
                                             bool dirac, const Vec3& auxiliary) const {
   if (dirac || !(pdf_sigma(x, from, to) > 0)) return std::nullopt;
   const auto m = facet(from, to);
+  const auto event = invert_event(probabilities(m->fresnel), m->reflects, auxiliary.x);
+  if (!event) return std::nullopt;
   const double side = from.z > 0 ? 1.0 : -1.0;
   const Vec2 u = facets_.invert_visible(side * from, m->h);
-  const double P = reflection_probability(m->F);
-  const double lobe = m->reflects ? warp::invert_interval(0, P, auxiliary.x)
-                                  : warp::invert_interval(P, 1, auxiliary.x);
-  return Vec3(lobe, u.x, u.y);
+  return Vec3(*event, u.x, u.y);
 }
 
 }  // namespace

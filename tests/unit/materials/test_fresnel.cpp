@@ -40,9 +40,9 @@ TEST(Fresnel, EqualIndicesAreInvisible) {
 TEST(Fresnel, DielectricIsTheSameFromBothSides) {
   for (const double eta : {0.5, 1.1, 1.5})
     for (const double cos_i : {0.9, 0.95, 0.999}) {
-      const auto [F, cos_t] = fresnel_dielectric(cos_i, eta);
-      const auto back = fresnel_dielectric(cos_t, 1 / eta);
-      EXPECT_NEAR(back.F, F, 1e-13);
+      const auto there = fresnel_dielectric(cos_i, eta);
+      const auto back = fresnel_dielectric(there.cos_t, 1 / eta);
+      EXPECT_NEAR(back.F, there.F, 1e-13);
       EXPECT_NEAR(back.cos_t, cos_i, 1e-14);
     }
 }
@@ -69,13 +69,27 @@ TEST(Fresnel, PurelyImaginaryIndexIsAPerfectMirror) {
   for (const double cos_i : {1.0, 0.7, 0.1, 1e-9}) EXPECT_EQ(fresnel_conductor(cos_i, 0, 1), 1);
 }
 
-TEST(Fresnel, ReflectionProbabilityWeighsTheTints) {
-  EXPECT_EQ(reflection_probability(0.3, 1, 1), 0.3);
-  EXPECT_NEAR(reflection_probability(0.3, 0.5, 0.25), 0.15 / (0.15 + 0.175), 1e-15);
-  EXPECT_EQ(reflection_probability(0.3, 0, 1), 0);
-  EXPECT_EQ(reflection_probability(0.3, 1, 0), 1);
-  EXPECT_EQ(reflection_probability(0.3, 0, 0), 0);
-  EXPECT_EQ(reflection_probability(0, 1, 0), 0);
+TEST(Fresnel, TransmittanceIsTheRest) {
+  for (const double eta : {0.7, 1.0, 1.5})
+    for (const double cos_i : {1.0, 0.8, 0.4, 1e-2}) {
+      const Refraction r = fresnel_dielectric(cos_i, eta);
+      EXPECT_NEAR(r.F + r.T, 1, 1e-15);
+    }
+  // Grazing: T → 4 cosθ (1/√(η²−1) + η²/√(η²−1))/2.
+  EXPECT_NEAR(fresnel_dielectric(1e-12, 1.5).T, 2e-12 * (1 + 2.25) / std::sqrt(1.25), 1e-22);
+}
+
+TEST(Fresnel, EventProbabilitiesWeighTheTints) {
+  const auto probabilities = [](double F, double reflectance, double transmittance) {
+    const auto p = event_probabilities({F, 1 - F, 1}, reflectance, transmittance);
+    return Vec2(p.reflection, p.transmission);
+  };
+  EXPECT_EQ(probabilities(0.3, 1, 1), Vec2(0.3, 0.7));
+  EXPECT_NEAR(probabilities(0.3, 0.5, 0.25).x, 0.15 / (0.15 + 0.175), 1e-15);
+  EXPECT_EQ(probabilities(0.3, 0, 1), Vec2(0, 1));
+  EXPECT_EQ(probabilities(0.3, 1, 0), Vec2(1, 0));
+  EXPECT_EQ(probabilities(0.3, 0, 0), Vec2(0, 0));
+  EXPECT_EQ(probabilities(0, 1, 0), Vec2(0, 0));
 }
 
 TEST(Fresnel, RefusesImpossibleIndices) {
