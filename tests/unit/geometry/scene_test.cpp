@@ -1,0 +1,277 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/scene/scene.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/shapes.h"
+#include "core/math/random.h"
+#include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/emitters.h"
+#include "core/scene/sensors.h"
+#include "media/media.h"
+#include "tests/helpers/statistics.h"
+
+namespace fogbow {
+namespace {
+
+using MediumPointer = std::shared_ptr<const Medium>;
+using ShapePointer = std::shared_ptr<const Shape>;
+
+MediumPointer fog(const std::string& id, double emission = 0, double sigma_t = 1) {
+  return make_homogeneous_medium(RGB(sigma_t), RGB(0.5), make_isotropic_phase(), RGB(emission), id);
+}
+
+Surface boundary(ShapePointer shape, MediumPointer interior, MediumPointer exterior,
+                 const std::string& id) {
+  Surface s;
+  s.shape = std::move(shape);
+  s.bsdf = make_null();
+  s.medium_boundary = true;
+  s.interior = std::move(interior);
+  s.exterior = std::move(exterior);
+  s.id = id;
+  s.where = {"test.xml", 7, 3};
+  return s;
+}
+
+Surface wall(ShapePointer shape) {
+  Surface s;
+  s.shape = std::move(shape);
+  s.bsdf = make_diffuse(RGB(0.5));
+  return s;
+}
+
+ShapePointer cube(double half, const Vec3& center = Vec3(0)) {
+  return make_cube(Transform::translate(center) * Transform::scale(Vec3(half)));
+}
+
+SceneDescription seen_from(const Vec3& origin, std::vector<Surface> surfaces) {
+  SceneDescription d;
+  d.surfaces = std::move(surfaces);
+  PerspectiveSettings camera;
+  camera.to_world = Transform::look_at(origin, origin + Vec3(0.1, 0.2, 1), {0, 1, 0});
+  d.sensor = make_perspective_sensor(camera);
+  d.emitters.push_back(make_point_emitter(origin + Vec3(0.01, 0, 0), RGB(1)));
+  return d;
+}
+
+int count_with(const Scene& scene, const std::string& text) {
+  int count = 0;
+  for (const std::string& w : scene.warnings()) count += w.find(text) != std::string::npos;
+  return count;
+}
+
+TEST(MediumAt, NestedBoundariesAnswersByRadius) {
+  const auto a = fog("a"), b = fog("b"), c = fog("c");
+  const Scene scene(seen_from(
+      {0, 0, -9}, {boundary(make_sphere(Vec3(0), 1), a, b, "core"),
+                   boundary(make_sphere({0.2, 0, 0}, 2), b, c, "shell"),
+                   boundary(cube(4), c, nullptr, "tank"), wall(make_sphere({0, 3, 0}, 0.5))}));
+  EXPECT_TRUE(scene.warnings().empty()) << scene.warnings()[0];
+  EXPECT_TRUE(scene.has_media());
+  EXPECT_TRUE(scene.has_null_surfaces());
+  Rng rng(testing::suite_seed(), RngDomain::Test, 30, 0);
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = 10.0 * uniform3(rng) - 5.0;
+    const Medium* expected = nullptr;
+    if (max_component(glm::abs(p)) < 4) expected = c.get();
+    if (length(p - Vec3(0.2, 0, 0)) < 2) expected = b.get();
+    if (length(p) < 1) expected = a.get();
+    wrong += scene.medium_at(p) != expected;
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+/// A null cube that reaches through a wall of the room, and lies in fog on one side of it.
+TEST(MediumAt, BoundaryThroughAWall) {
+  const auto smoke = fog("smoke");
+  const Scene scene(seen_from(
+      {0, 0, -3}, {wall(cube(4)), boundary(cube(1, {4, 0, 0}), smoke, nullptr, "plume")}));
+  EXPECT_TRUE(scene.warnings().empty()) << scene.warnings()[0];
+  for (const double x : {3.1, 3.9, 4.1, 4.9})
+    EXPECT_EQ(scene.medium_at({x, 0.3, 0.2}), smoke.get());
+  for (const double x : {2.9, -3.0, 5.1}) EXPECT_EQ(scene.medium_at({x, 0.3, 0.2}), nullptr);
+}
+
+/// Water under an open surface, held by walls that are no boundaries; a ball of glass in it.
+TEST(MediumAt, OpenSheetOverAPool) {
+  const auto water = fog("water");
+  const auto sheet = make_rectangle(Transform::translate({0, 0, 1}) * Transform::scale(Vec3(2)));
+  const Scene scene(seen_from({0, 0, 3}, {boundary(sheet, water, nullptr, "surface"),
+                                          wall(make_cube(Transform::scale({2, 2, 4}))),
+                                          wall(make_sphere({0, 0, -1}, 0.7))}));
+  EXPECT_EQ(count_with(scene, "4 border edges"), 1);
+  EXPECT_EQ(count_with(scene, "shape 'surface' (test.xml:7:3)"), 1);
+  EXPECT_EQ(count_with(scene, "camera"), 0);
+  Rng rng(testing::suite_seed(), RngDomain::Test, 31, 0);
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i) {
+    const Vec3 p = Vec3(1.99, 1.99, 3.99) * (2.0 * uniform3(rng) - 1.0);
+    wrong += scene.medium_at(p) != (p.z < 1 ? water.get() : nullptr);
+  }
+  EXPECT_EQ(wrong, 0);
+}
+
+/// On a boundary itself the primitive it lies on does not count: what is beyond it answers.
+TEST(MediumAt, IgnoresThePrimitiveThePointLiesOn) {
+  const auto inner = fog("inner"), outer = fog("outer");
+  const auto lid = make_rectangle(Transform());
+  const Scene scene(seen_from(
+      {0, 0, -6}, {boundary(lid, inner, inner, "lid"), boundary(cube(3), outer, nullptr, "tank")}));
+  EXPECT_EQ(scene.medium_at({0.1, 0.2, 0}, {0, 0}), outer.get());
+}
+
+TEST(MediumAt, WithoutBoundariesIsWhatTheCameraDeclares) {
+  const auto haze = fog("haze");
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(2))});
+  d.sensor_medium = haze;
+  d.sensor_medium_declared = true;
+  const Scene scene(std::move(d));
+  EXPECT_EQ(scene.medium_at({1, 1, 1}), haze.get());
+  EXPECT_TRUE(scene.warnings().empty());
+  const Scene clear(seen_from(Vec3(0), {wall(cube(2))}));
+  EXPECT_EQ(clear.medium_at({1, 1, 1}), nullptr);
+}
+
+TEST(Scene, ReportsACameraInAnUndeclaredMedium) {
+  const auto smoke = fog("smoke");
+  const auto surfaces = [&] {
+    return std::vector<Surface>{boundary(cube(2), smoke, nullptr, "box")};
+  };
+  const Scene scene(seen_from(Vec3(0), surfaces()));
+  EXPECT_EQ(count_with(scene, "the camera lies in medium 'smoke' and does not declare it"), 1);
+  EXPECT_THROW(Scene(seen_from(Vec3(0), surfaces()), true), Error);
+  SceneDescription declared = seen_from(Vec3(0), surfaces());
+  declared.sensor_medium = smoke;
+  declared.sensor_medium_declared = true;
+  EXPECT_NO_THROW(Scene(std::move(declared), true));
+  SceneDescription wrong = seen_from({0, 0, -5}, surfaces());
+  wrong.sensor_medium = smoke;
+  wrong.sensor_medium_declared = true;
+  EXPECT_EQ(count_with(Scene(std::move(wrong)), "declares medium 'smoke' but lies in vacuum"), 1);
+}
+
+TEST(Scene, ReportsBoundariesThatOverlap) {
+  const auto a = fog("a"), b = fog("b");
+  const Scene nested(seen_from(Vec3(0), {boundary(make_sphere(Vec3(0), 2), a, b, "inner"),
+                                         boundary(cube(4), b, nullptr, "outer")}));
+  EXPECT_EQ(count_with(nested, "overlap"), 0);
+  // The slab cuts through the smaller cube; in the overlap its faces are seen first.
+  const auto slab = make_cube(Transform::scale({0.1, 10, 10}));
+  const Scene crossed(seen_from(
+      Vec3(0), {boundary(cube(1), a, nullptr, "cube"), boundary(slab, b, nullptr, "slab")}));
+  EXPECT_EQ(crossed.medium_at(Vec3(0)), b.get());
+  EXPECT_EQ(count_with(crossed, "the camera lies within the closed boundary of medium 'a'"), 1);
+}
+
+TEST(Scene, RefusesWhatCannotBeRendered) {
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(1))});
+  d.sensor = nullptr;
+  EXPECT_THROW(Scene(std::move(d)), Error);
+  d = seen_from(Vec3(0), {wall(cube(1))});
+  d.emitters.clear();
+  EXPECT_THROW(Scene(std::move(d)), Error);
+  d = seen_from(Vec3(0), {wall(cube(1))});
+  d.surfaces[0].bsdf = nullptr;
+  EXPECT_THROW(Scene(std::move(d)), Error);
+}
+
+TEST(Scene, ChoosesEmittersInProportionToTheirPower) {
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(3)), wall(make_sphere({0, 2, 0}, 0.5))});
+  d.surfaces[1].emitter = make_area_emitter(d.surfaces[1].shape, RGB(1, 2, 3));
+  d.emitters.push_back(make_constant_emitter(RGB(0.1)));
+  const Scene scene(std::move(d));
+  ASSERT_EQ(scene.emitter_count(), 3u);
+  EXPECT_EQ(scene.emitter_of_surface(0), -1);
+  const int light = scene.emitter_of_surface(1);
+  ASSERT_GE(light, 0);
+  EXPECT_EQ(scene.emitter(static_cast<std::size_t>(light)).sample_position(Vec3(0.3))->id.shape,
+            1u);
+  ASSERT_EQ(scene.infinite_emitters().size(), 1u);
+  double total = 0;
+  for (std::size_t i = 0; i < 3; ++i) total += luminance(scene.emitter(i).power());
+  for (std::size_t i = 0; i < 3; ++i)
+    EXPECT_NEAR(scene.emitter_distribution().probability(i),
+                luminance(scene.emitter(i).power()) / total, 1e-15);
+  EXPECT_NEAR(scene.radius(), 3 * std::sqrt(3.0), 1e-12);
+}
+
+TEST(Scene, ChoosesUniformlyAmongEmittersWithoutPower) {
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(1))});
+  d.emitters = {make_point_emitter(Vec3(0), RGB(0)), make_point_emitter(Vec3(0.1), RGB(0))};
+  const Scene scene(std::move(d));
+  EXPECT_EQ(scene.emitter_distribution().probability(0), 0.5);
+}
+
+TEST(Scene, LeavesOutLightFromBeyondUnboundedFog) {
+  const auto haze = fog("haze");
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(1, {5, 0, 0}))});
+  d.sensor_medium = haze;
+  d.sensor_medium_declared = true;
+  d.emitters.push_back(make_constant_emitter(RGB(1)));
+  const Scene scene(std::move(d));
+  EXPECT_TRUE(scene.infinite_emitters().empty());
+  EXPECT_EQ(scene.emitter_count(), 1u);
+  EXPECT_EQ(count_with(scene, "unbounded fog"), 1);
+  // Fog that is bounded does not matter.
+  SceneDescription bounded = seen_from({0, 0, -9}, {boundary(cube(2), haze, nullptr, "box")});
+  bounded.emitters.push_back(make_constant_emitter(RGB(1)));
+  EXPECT_EQ(Scene(std::move(bounded)).infinite_emitters().size(), 1u);
+}
+
+TEST(Scene, EmittingMediaAreEmittersWithinTheirBoundaries) {
+  const auto flame = fog("flame", 2);
+  SceneDescription d = seen_from(
+      {0, 0, -4}, {boundary(make_sphere({1, 0, 0}, 0.5), flame, nullptr, "fire"),
+                   boundary(cube(0.1, {1, 0, 0}), nullptr, flame, "hole"), wall(cube(5))});
+  const Scene scene(std::move(d));
+  EXPECT_TRUE(scene.warnings().empty()) << scene.warnings()[0];
+  const int index = scene.emitter_of_medium(flame.get());
+  ASSERT_GE(index, 0);
+  const Emitter& emitter = scene.emitter(static_cast<std::size_t>(index));
+  Rng rng(testing::suite_seed(), RngDomain::Test, 32, 0);
+  int found = 0, wrong = 0;
+  constexpr int kSamples = 20000;
+  for (int i = 0; i < kSamples; ++i) {
+    const auto x = emitter.sample_position(uniform3(rng));
+    if (!x) continue;
+    ++found;
+    const Vec3 p = x->surface.position - Vec3(1, 0, 0);
+    wrong += length(p) > 0.5 || max_component(glm::abs(p)) < 0.1;
+    EXPECT_DOUBLE_EQ(x->pdf_position, 1);
+  }
+  EXPECT_EQ(wrong, 0);
+  // The volume of ball less hole, in a bounding box of volume one.
+  const double share = kPi / 6 - 0.008, sigma = std::sqrt(share * (1 - share) * kSamples);
+  EXPECT_GT(testing::p_value_normal((found - share * kSamples) / sigma), testing::kSuiteFalseAlarm);
+}
+
+TEST(Scene, EmittingMediumWithoutBoundsIsReported) {
+  const auto glow = fog("glow", 1);
+  const auto description = [&](std::vector<Surface> surfaces) {
+    SceneDescription d = seen_from(Vec3(0), std::move(surfaces));
+    d.sensor_medium = glow;
+    d.sensor_medium_declared = true;
+    return d;
+  };
+  EXPECT_THROW(Scene(description({})), Error);
+  const Scene open(description({wall(cube(1, {3, 0, 0}))}));
+  EXPECT_EQ(count_with(open, "is not bounded"), 1);
+  const Scene room(description({wall(cube(3))}));
+  EXPECT_TRUE(room.warnings().empty());
+  EXPECT_GE(room.emitter_of_medium(glow.get()), 0);
+}
+
+TEST(Scene, WithoutSurfacesSpansCameraAndLights) {
+  SceneDescription d = seen_from({1, 2, 3}, {});
+  d.emitters = {make_point_emitter({4, 6, 3}, RGB(1))};
+  d.sensor_medium = fog("fog");
+  d.sensor_medium_declared = true;
+  const Scene scene(std::move(d));
+  EXPECT_DOUBLE_EQ(scene.radius(), 2.5);
+  EXPECT_FALSE(scene.accel().intersect({Vec3(0), Vec3(0, 0, 1)}));
+}
+
+}  // namespace
+}  // namespace fogbow
