@@ -18,8 +18,9 @@ if(NOT want_shared STREQUAL BUILD_SHARED_LIBS)
   # The other kind of library; ccache makes its objects from those of the main build.
   set(library_build ${stage}-build)
   run(${CMAKE_COMMAND} -S ${SOURCE_DIR} -B ${library_build} ${toolchain} -DBUILD_SHARED_LIBS=${want_shared} -DFOGBOW_BUILD_TESTS=OFF -DFOGBOW_BUILD_BENCHMARKS=OFF)
-  run(${CMAKE_COMMAND} --build ${library_build} --parallel 2)
 endif()
+# Nothing to do for the main build, unless headers changed since: what is installed must fit together.
+run(${CMAKE_COMMAND} --build ${library_build} --parallel 2 --target fogbow fogbow_image_io fogbow_cli)
 run(${CMAKE_COMMAND} --install ${library_build} --prefix ${stage})
 run(${CMAKE_COMMAND} -S ${SOURCE_DIR}/tests/consumer -B ${stage}/consumer --fresh ${toolchain} -DCMAKE_PREFIX_PATH=${stage})
 run(${CMAKE_COMMAND} --build ${stage}/consumer)
