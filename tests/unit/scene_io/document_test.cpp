@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene_folder.h"
+#include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
 namespace {

@@ -1,7 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <set>
 
-#include "scene_folder.h"
+#include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
 namespace {
