@@ -19,8 +19,11 @@ namespace {
 constexpr int kChainFilmExponent = -36;
 /// Fraction bits of the other films below the mean luminance.
 constexpr int kRadianceFractionBits = 30;
-/// χ²₇ that agreeing groups exceed once in 10⁹ renders.
-constexpr double kDisagreement = 57.0;
+/// Standard error of b between groups, relative to b, above which the groups are said to disagree:
+/// the picture's brightness is then anyone's guess.
+constexpr double kDisagreement = 0.1;
+/// Steps of every chain between two looks at the clock.
+constexpr std::uint64_t kStepsPerRound = 64;
 
 /// Time, targets and the calls to whoever watches.
 class Session {
@@ -48,6 +51,7 @@ class Session {
   bool out_of_time() const { return options_.seconds && seconds() >= *options_.seconds; }
 
   void begin_rendering() { render_start_ = seconds(); }
+  double render_seconds() const { return seconds() - render_start_; }
 
   template <class Develop>
   void report(std::uint64_t samples, double b, double b_stderr, Develop&& develop) {
@@ -56,8 +60,7 @@ class Session {
       p.stage = "render";
       p.seconds = seconds();
       p.samples_per_pixel = static_cast<double>(samples) / pixels_;
-      p.samples_per_second =
-          static_cast<double>(samples) / std::fmax(p.seconds - render_start_, 1e-9);
+      p.samples_per_second = static_cast<double>(samples) / std::fmax(render_seconds(), 1e-9);
       p.b = b;
       p.b_stderr = b_stderr;
       if (target_ > 0) p.fraction = static_cast<double>(samples) / target_;
@@ -126,9 +129,9 @@ void finish(RenderResult& result, const Session& session, const RenderSettings& 
   result.integrator = settings.integrator;
   result.groups = Film::kGroups;
   result.seconds = session.seconds();
+  result.render_seconds = session.render_seconds();
   result.cpu_seconds = session.cpu_since_start();
   result.rays = session.rays_since_start();
-  result.interrupted = session.interrupted();
   result.notes.insert(result.notes.begin(), settings.notes.begin(), settings.notes.end());
   if (!settings.depth_capped || result.lengths.empty()) return;
   const ClassShare& last = result.lengths.back();
@@ -158,6 +161,7 @@ RenderResult render_independent(const Scene& scene, const RenderOptions& options
            !session.interrupted());
 
   RenderResult result;
+  result.interrupted = session.interrupted() && sampling.samples() < session.target();
   result.image = sampling.develop();
   const ReplicateMean b = total(sampling.tally(), scale);
   result.b = b.mean;
@@ -247,10 +251,7 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
   Film film(scene.film(), kChainFilmExponent);
   session.begin_rendering();
 
-  const auto [width, height] = rendered_size(scene.film());
   const std::uint64_t chains = r.ensemble.size();
-  const std::uint64_t per_round =
-      (static_cast<std::uint64_t>(width) * height + chains - 1) / chains;
   const std::uint64_t target = session.target();
   std::uint64_t round = 0;
   do {
@@ -258,7 +259,7 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
     r.ensemble.run(
         [&](std::size_t i) {
           const std::uint64_t share = target / chains + (i < target % chains ? 1 : 0);
-          return std::min(share, round * per_round);
+          return std::min(share, round * kStepsPerRound);
         },
         film);
     const Normalization n = r.normalization();
@@ -268,6 +269,7 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
   r.ensemble.finish(film);
 
   RenderResult result;
+  result.interrupted = session.interrupted() && r.ensemble.total_steps() < target;
   const Normalization n = r.normalization();
   result.image = r.develop(film);
   result.b = n.b();
@@ -276,7 +278,7 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
   result.chains = static_cast<int>(chains);
   result.lengths = shares(r.tally(), r.group_scale(n));
   result.mutations = r.reports();
-  result.groups_disagree = n.disagreement() > kDisagreement;
+  result.groups_disagree = n.standard_error() > kDisagreement * n.b();
   result.diagnostics["normalization_chi2"] = n.disagreement();
   result.diagnostics["normalization_samples"] = static_cast<double>(n.samples());
   result.non_finite = film.refused();
@@ -344,7 +346,7 @@ std::map<std::string, std::size_t> render_memory(const Scene& scene, const Rende
   const RenderSettings settings = read_render_settings(scene, options);
   std::map<std::string, std::size_t> parts;
   parts["acceleration"] = scene.accel().memory_bytes();
-  parts["film"] = Film(scene.film(), 0).memory_bytes();
+  parts["film"] = Film::memory_bytes(scene.film());
   const auto depth = static_cast<std::size_t>(settings.max_depth);
   const std::size_t workspace = 2 * depth * sizeof(SubpathVertex);
   if (uses_chains(settings)) {

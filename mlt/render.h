@@ -59,10 +59,11 @@ struct RenderResult {
   std::uint64_t samples = 0;  ///< paths or mutations, without the bootstrap
   int chains = 0, groups = 0;
   double seconds = 0, cpu_seconds = 0;
+  double render_seconds = 0;  ///< without the bootstrap
   std::uint64_t rays = 0;
   std::uint64_t non_finite = 0;  ///< contributions refused
   bool interrupted = false;
-  bool groups_disagree = false;  ///< between-group spread is not what the groups' own errors allow
+  bool groups_disagree = false;  ///< b differs between groups by more than a tenth of itself
   std::vector<ClassShare> lengths;
   std::vector<MutationReport> mutations;
   std::map<std::string, double> diagnostics;  ///< R-hat, ESS, …

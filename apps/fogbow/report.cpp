@@ -102,7 +102,7 @@ std::string report_text(const RenderRecord& record) {
       format("%s %s (%.4g a pixel) in %s (%.1f CPU-s): %s %s/s, %s rays/s\n",
              with_si_prefix(samples).c_str(), unit.c_str(), pixels > 0 ? samples / pixels : 0.0,
              duration(result.seconds).c_str(), result.cpu_seconds,
-             with_si_prefix(per_second(samples, result.seconds)).c_str(), unit.c_str(),
+             with_si_prefix(per_second(samples, result.render_seconds)).c_str(), unit.c_str(),
              with_si_prefix(per_second(static_cast<double>(result.rays), result.seconds)).c_str());
   text += "wrote " + record.files.exr + ", " + record.files.png + ", " + record.files.json + "\n";
   return text;

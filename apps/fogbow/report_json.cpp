@@ -54,15 +54,15 @@ ordered_json lengths_json(const RenderResult& result) {
 }
 
 ordered_json speed_json(const RenderResult& result) {
-  const auto rate = [&](std::uint64_t count) {
-    return result.seconds > 0 ? ordered_json(static_cast<double>(count) / result.seconds)
-                              : ordered_json(nullptr);
+  const auto rate = [](std::uint64_t count, double seconds) {
+    return seconds > 0 ? ordered_json(static_cast<double>(count) / seconds) : ordered_json(nullptr);
   };
   return {{"seconds", result.seconds},
+          {"render_seconds", result.render_seconds},
           {"cpu_seconds", result.cpu_seconds},
           {"rays", result.rays},
-          {"rays_per_second", rate(result.rays)},
-          {"samples_per_second", rate(result.samples)}};
+          {"rays_per_second", rate(result.rays, result.seconds)},
+          {"samples_per_second", rate(result.samples, result.render_seconds)}};
 }
 
 ordered_json options_json(const RenderArguments& arguments) {

@@ -234,9 +234,13 @@ void Film::add_error_layers(Image& image, double scale,
   }
 }
 
-std::size_t Film::memory_bytes() const {
-  return sizeof(*this) + sizeof(double) * (column_mass_.capacity() + row_mass_.capacity()) +
-         sizeof(std::int64_t) * (rgb_.capacity() + group_.capacity());
+std::size_t Film::memory_bytes(const FilmSettings& settings) {
+  const auto width =
+      static_cast<std::size_t>(settings.crop_width > 0 ? settings.crop_width : settings.width);
+  const auto height =
+      static_cast<std::size_t>(settings.crop_width > 0 ? settings.crop_height : settings.height);
+  return sizeof(Film) + sizeof(double) * (width + height) +
+         sizeof(std::int64_t) * (3 + kGroups) * width * height;
 }
 
 }  // namespace fogbow

@@ -51,7 +51,8 @@ class Film {
   int unit_exponent() const { return unit_exponent_; }
   /// Splats that were not finite.
   std::uint64_t refused() const { return refused_; }
-  std::size_t memory_bytes() const;
+  /// Of a film with these settings.
+  static std::size_t memory_bytes(const FilmSettings& settings);
 
   void serialize(std::ostream& out) const;
   /// Throws Error(InputOutput) on a broken stream or one of a film of other settings.

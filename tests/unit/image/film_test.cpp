@@ -259,8 +259,8 @@ TEST(Film, PixelsBeyondSinglePrecisionAreAnError) {
 
 TEST(Film, TellsItsMemory) {
   const Film film(box_film(300, 200), -20);
-  EXPECT_GE(film.memory_bytes(), 300u * 200 * 11 * 8);
-  EXPECT_LE(film.memory_bytes(), 300u * 200 * 11 * 8 + 500 * 8 + 1024);
+  EXPECT_GE(Film::memory_bytes(film.settings()), 300u * 200 * 11 * 8);
+  EXPECT_LE(Film::memory_bytes(film.settings()), 300u * 200 * 11 * 8 + 500 * 8 + 1024);
 }
 
 }  // namespace
