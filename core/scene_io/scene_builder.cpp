@@ -30,20 +30,24 @@ bool is_shared_tag(const std::string& tag) {
   return tag == "bsdf" || tag == "medium" || tag == "phase" || tag == "rfilter";
 }
 
-/// Calls the constructor that a table has for a plugin; what it throws gets the place of the
-/// object.
+/// The constructor that a table has for a plugin.
+template <class Table>
+const auto& find_plugin(const Table& table, const std::string& kind, const std::string& plugin,
+                        const SourceLocation& where) {
+  if (const auto it = table.find(plugin); it != table.end()) return it->second;
+  std::vector<std::string> known;
+  for (const auto& [name, constructor] : table) known.push_back(name);
+  throw Error(ErrorKind::Scene, where,
+              "the " + kind + " plugin " + quote(plugin) + " is not supported" +
+                  suggestion(plugin, known) + "; known: " + listed(known));
+}
+
+/// What the constructor throws gets the place of the object.
 template <class Table, class... Arguments>
 auto construct(const Table& table, Properties& p, Arguments&&... arguments) {
-  const auto it = table.find(p.plugin());
-  if (it == table.end()) {
-    std::vector<std::string> known;
-    for (const auto& [name, constructor] : table) known.push_back(name);
-    throw Error(ErrorKind::Scene, p.where(),
-                "the " + p.kind() + " plugin " + quote(p.plugin()) + " is not supported" +
-                    suggestion(p.plugin(), known) + "; known: " + listed(known));
-  }
+  const auto& constructor = find_plugin(table, p.kind(), p.plugin(), p.where());
   try {
-    return it->second(p, std::forward<Arguments>(arguments)...);
+    return constructor(p, std::forward<Arguments>(arguments)...);
   } catch (const std::domain_error& error) {
     throw Error(ErrorKind::Scene, p.where(), error.what());
   } catch (const std::invalid_argument& error) {
@@ -182,10 +186,23 @@ void SceneBuilder::read_child(Object& object, const XmlNode& child) {
 const SceneBuilder::Shared& SceneBuilder::shared(const XmlNode& node) {
   if (const auto it = shared_.find(&node); it != shared_.end()) return it->second;
   const Nesting guard(open_, node);
+  check_plugin(node);
   Object object = read(node);
   NestedObject::Object made = make_shared_object(object.properties);
   finish(object);
   return shared_.emplace(&node, Shared{std::move(made), object.hash.value()}).first->second;
+}
+
+/// Before the object is read: nothing that stands in an unknown one is worth an error.
+void SceneBuilder::check_plugin(const XmlNode& node) const {
+  const auto check = [&](const auto& table) {
+    find_plugin(table, node.tag, node.required("type"), node.where());
+  };
+  if (node.tag == "shape") return check(shape_plugins());
+  if (node.tag == "bsdf") return check(bsdf_plugins());
+  if (node.tag == "medium") return check(media_.media);
+  if (node.tag == "phase") return check(media_.phases);
+  if (node.tag == "rfilter") return check(filter_plugins());
 }
 
 NestedObject::Object SceneBuilder::make_shared_object(Properties& p) {
@@ -295,6 +312,7 @@ void SceneBuilder::integrator(const XmlNode& node) {
 
 void SceneBuilder::surface(const XmlNode& node) {
   const Nesting guard(open_, node);
+  check_plugin(node);
   Object object = read(node);
   Properties& p = object.properties;
   Surface surface;

@@ -57,6 +57,7 @@ class SceneBuilder {
   Object read(const XmlNode& node);
   void read_child(Object& object, const XmlNode& child);
   const XmlNode& target(const XmlNode& reference) const;
+  void check_plugin(const XmlNode& node) const;
   const Shared& shared(const XmlNode& node);
   NestedObject::Object make_shared_object(Properties& properties);
   void finish(Object& object);

@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "scene_folder.h"
+#include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
 namespace {
@@ -31,6 +31,8 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
        "2:1: the medium plugin \"heterogeneous\" is not supported (did you mean \"homogeneous\"?); "
        "known: "
        "\"homogeneous\""},
+      {R"(<medium type="heterogeneous"><volume name="sigma_t" type="gridvolume"/></medium>)",
+       "2:1: the medium plugin \"heterogeneous\" is not supported"},
       {R"(<phase type="rayleigh"/>)",
        "2:1: the phase plugin \"rayleigh\" is not supported; known: \"hg\""},
       {R"(<emitter type="envmap"/>)", "2:1: the emitter plugin \"envmap\" is not supported"},
