@@ -70,7 +70,7 @@ XmlNode SceneDocument::load(const fs::path& path, const SourceLocation& where) {
   const std::string text = read_file(path, limits_.bytes - bytes_, where);
   bytes_ += text.size();
   open_files_.push_back(identity);
-  return parse_xml(text, path.string(), limits_, nodes_);
+  return parse_xml(text, path.string(), limits_, nodes_, diagnostics_);
 }
 
 void SceneDocument::expand(XmlNode& source, std::vector<XmlNode>& out) {

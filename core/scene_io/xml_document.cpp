@@ -16,12 +16,13 @@ namespace {
 class Converter {
  public:
   Converter(std::string_view text, const std::string& file, const XmlLimits& limits,
-            std::size_t& nodes)
+            std::size_t& nodes, Diagnostics& diagnostics)
       : text_(text),
         lines_(text),
         file_(std::make_shared<const std::string>(file)),
         limits_(limits),
-        nodes_(nodes) {}
+        nodes_(nodes),
+        diagnostics_(diagnostics) {}
 
   SourceLocation at(std::size_t offset) const { return lines_.locate(*file_, offset); }
 
@@ -48,8 +49,8 @@ class Converter {
       if (child.type() == pugi::node_element)
         node.children.push_back(convert(child, depth + 1));
       else
-        fail(static_cast<std::size_t>(child.offset_debug()),
-             "text " + quote(child.value()) + " where only elements may stand");
+        diagnostics_.warn(at(static_cast<std::size_t>(child.offset_debug())),
+                          "text " + quote(child.value()) + " between elements has no effect");
     }
     return node;
   }
@@ -87,6 +88,7 @@ class Converter {
   std::shared_ptr<const std::string> file_;
   const XmlLimits& limits_;
   std::size_t& nodes_;
+  Diagnostics& diagnostics_;
 };
 
 /// pugixml allocates a record for every element and attribute before we can count them. Those in
@@ -126,7 +128,7 @@ const std::string& XmlNode::required(const std::string& name) const {
 }
 
 XmlNode parse_xml(const std::string& whole, const std::string& file, const XmlLimits& limits,
-                  std::size_t& nodes) {
+                  std::size_t& nodes, Diagnostics& diagnostics) {
   std::string_view text = whole;
   if (text.starts_with("\xef\xbb\xbf")) text.remove_prefix(3);
   if (text.starts_with("\xff\xfe") || text.starts_with("\xfe\xff"))
@@ -139,7 +141,7 @@ XmlNode parse_xml(const std::string& whole, const std::string& file, const XmlLi
   pugi::xml_document document;
   const pugi::xml_parse_result result = document.load_buffer(
       text.data(), text.size(), pugi::parse_default | pugi::parse_trim_pcdata, pugi::encoding_utf8);
-  Converter converter(text, file, limits, nodes);
+  Converter converter(text, file, limits, nodes, diagnostics);
   if (!result)
     converter.fail(static_cast<std::size_t>(result.offset),
                    "malformed XML: " + std::string(result.description()));

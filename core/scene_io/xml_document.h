@@ -4,6 +4,7 @@
 #include <string>
 #include <vector>
 
+#include "core/scene_io/diagnostics.h"
 #include "core/util/error.h"
 
 namespace fogbow {
@@ -41,9 +42,9 @@ struct XmlLimits {
 };
 
 /// Parses a text; comments, doctype and processing instructions are dropped, bytes need not be
-/// valid UTF-8. `nodes` counts on. Throws Error(Scene) on malformed text, null bytes, text between
-/// elements, repeated attributes and exceeded limits.
+/// valid UTF-8. `nodes` counts on. Text between elements is warned of. Throws Error(Scene) on
+/// malformed text, null bytes, repeated attributes and exceeded limits.
 XmlNode parse_xml(const std::string& text, const std::string& file, const XmlLimits& limits,
-                  std::size_t& nodes);
+                  std::size_t& nodes, Diagnostics& diagnostics);
 
 }  // namespace fogbow

@@ -83,8 +83,6 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
       {R"(<shape type="obj"><string name="filename" value="no.obj"/></shape>)",
        "2:19: file not found: \"no.obj\""},
       {R"(<shape type="sphere" type="cube"/>)", "2:22: attribute \"type\" is given twice"},
-      {R"(<shape type="sphere">hello</shape>)",
-       "2:22: text \"hello\" where only elements may stand"},
       {R"(<shape type="sphere"></shap>)", "2:24: malformed XML"},
   };
   SceneFolder folder;
@@ -130,6 +128,8 @@ TEST(Warnings, NameWhateverHasNoEffect) {
        "2:22: the bsdf nested in bsdf \"diffuse\" has no effect"},
       {R"(<shape type="sphere"><film type="hdrfilm"/></shape>)",
        "2:22: the film nested in shape \"sphere\" has no effect"},
+      {R"(<shape type="sphere"> hello </shape>)",
+       "2:23: text \"hello\" between elements has no effect"},
       {R"(<float name="a" value="1"/>)", "2:1: <float> directly in <scene> has no effect"},
       {R"(<sensor type="perspective"/>)", "3:1: a second sensor has no effect"},
       {R"(<bsdf type="roughconductor"><boolean name="sample_visible" value="false"/></bsdf>)",
