@@ -14,6 +14,7 @@ const Vec3 kRoomCamera(0.1, 0.1, 0.8), kRoomTarget(-0.1, -0.1, -1);
 const Ball kGlass{Vec3(0.3, -0.4, -0.2), 0.35}, kMirror{Vec3(0.45, 0.5, -0.4), 0.25};
 /// n² of the glass.
 constexpr double kInGlass = 2.25;
+using enum Sampler::Price;
 constexpr const char* kSpecularFirst =
     "light: cannot connect to a pinhole past the specular vertex next to it";
 
@@ -53,28 +54,28 @@ void add_half_spaces(std::vector<ClosedForm>& forms) {
                    {{"albedo", "0.5"}, {"half_width", "20"}, {"half_depth", "6"}},
                    half_space(0.5),
                    true,
-                   {{"path", 25}, {"light", 1500}, {"bdpt", 70}, {"pssmlt", 150}},
+                   {{"path", 30}, {"light", 2200}, {"bdpt", 60}, {"pssmlt", 150}},
                    ""});
   forms.push_back({"Chandrasekhar, albedo 0.9",
                    name,
                    {{"albedo", "0.9"}, {"half_width", "30"}, {"half_depth", "10"}},
                    half_space(0.9),
                    true,
-                   {{"path", 25}, {"light", 4000}, {"bdpt", 70}, {"pssmlt", 150}},
+                   {{"path", 12}, {"light", 4800, kCostly}, {"bdpt", 65}, {"pssmlt", 150}},
                    ""});
   forms.push_back({"Chandrasekhar, albedo 0.99",
                    name,
                    {{"albedo", "0.99"}, {"half_width", "60"}, {"half_depth", "30"}},
                    half_space(0.99),
                    true,
-                   {{"path", 150}, {"pssmlt", 150, true}},
+                   {{"path", 130}, {"pssmlt", 200, kLongOnly}},
                    "light and bdpt: a hundred scatterings make too long a computation"});
   forms.push_back({"Giovanelli",
                    "half-space-glass",
                    {},
                    half_space_in_glass,
                    true,
-                   {{"path", 40}, {"bdpt", 300}, {"pssmlt", 200}},
+                   {{"path", 50}, {"bdpt", 310, kCostly}, {"pssmlt", 340, kCostly}},
                    kSpecularFirst});
 }
 
@@ -89,67 +90,79 @@ void add_slabs(std::vector<ClosedForm>& forms) {
                    narrow,
                    everywhere(0.09739),
                    true,
-                   {{"path", 80}, {"bdpt", 150}, {"pssmlt", 200}},
+                   {{"path", 140}, {"bdpt", 330}, {"pssmlt", 310}},
                    too_narrow});
   forms.push_back({"van de Hulst T",
                    name,
                    with(narrow, dark),
                    everywhere(0.66096),
                    true,
-                   {{"path", 10}, {"bdpt", 20}, {"pssmlt", 130}},
+                   {{"path", 10}, {"bdpt", 22}, {"pssmlt", 140}},
                    too_narrow});
-  forms.push_back({"slab R",
-                   name,
-                   {},
-                   slab(SlabSide::Lit),
-                   true,
-                   {{"path", 100}, {"light", 5000, true}, {"bdpt", 200}, {"pssmlt", 200}},
-                   ""});
+  forms.push_back(
+      {"slab R",
+       name,
+       {{"half_width", "30"}, {"box", "29"}},
+       slab(SlabSide::Lit),
+       true,
+       {{"path", 80}, {"light", 38000, kLongOnly}, {"bdpt", 180}, {"pssmlt", 440, kCostly}},
+       ""});
   forms.push_back({"slab T",
                    name,
                    dark,
                    slab(SlabSide::Dark),
                    true,
-                   {{"path", 10}, {"bdpt", 30}, {"pssmlt", 130}},
+                   {{"path", 10}, {"bdpt", 34}, {"pssmlt", 140}},
                    "light: the ballistic part comes from infinity straight to the pinhole"});
 }
 
 /// A room as a whole, and without the pixels that show balls: light tracing sees none of those, and
 /// wants the near plane far away.
 void add_room(std::vector<ClosedForm>& forms, const std::string& name, const std::string& scene,
-              const Definitions& definitions, const std::vector<Ball>& balls) {
-  forms.push_back({name,
-                   scene,
-                   definitions,
-                   everywhere(1),
-                   true,
-                   {{"path", 15}, {"bdpt", 20}, {"pssmlt", 130}},
-                   kSpecularFirst});
+              const Definitions& definitions, const std::vector<Ball>& balls,
+              const std::vector<Sampler>& from_eye, const Sampler& light) {
+  forms.push_back({name, scene, definitions, everywhere(1), true, from_eye, kSpecularFirst});
   forms.push_back({name + ", beside balls",
                    scene,
                    with(definitions, {{"near", "0.2"}}),
                    beside(balls),
                    true,
-                   {{"light", 200}},
+                   {light},
                    "path, bdpt, pssmlt: the whole picture is compared above"});
 }
 
-void add_rooms(std::vector<ClosedForm>& forms) {
-  const std::vector<Sampler> from_glass{{"path", 10}, {"bdpt", 20}, {"pssmlt", 130}};
-  const Definitions two_channels{{"fog_sigma_t", "0.5, 0.8, 0"}};
-  const Definitions inside{{"camera", "0.3, -0.4, -0.1"}};
-  add_room(forms, "enclosure", "conservative-enclosure", {}, {kGlass});
-  add_room(forms, "enclosure, fog in R and G", "conservative-enclosure", two_channels, {kGlass});
-  forms.push_back({"enclosure from inside glass", "conservative-enclosure",
-                   with(inside, {{"medium", "milk"}}), everywhere(kInGlass), true, from_glass,
+void add_enclosures(std::vector<ClosedForm>& forms) {
+  const char* scene = "conservative-enclosure";
+  add_room(forms, "enclosure", scene, {}, {kGlass}, {{"path", 12}, {"bdpt", 24}, {"pssmlt", 140}},
+           {"light", 950});
+  add_room(forms, "enclosure, fog in R and G", scene, {{"fog_sigma_t", "0.5, 0.8, 0"}}, {kGlass},
+           {{"path", 40}, {"bdpt", 40}, {"pssmlt", 350}}, {"light", 1900, kCostly});
+  forms.push_back({"enclosure from inside glass",
+                   scene,
+                   {{"camera", "0.3, -0.4, -0.1"}, {"medium", "milk"}},
+                   everywhere(kInGlass),
+                   true,
+                   {{"path", 10}, {"bdpt", 14}, {"pssmlt", 140}},
                    kSpecularFirst});
-  add_room(forms, "cavity", "isothermal-cavity", {}, {kGlass, kMirror});
-  add_room(forms, "cavity, fog in R and G", "isothermal-cavity",
-           with(two_channels, {{"fog_emission", "0.2, 0.4, 0"}}), {kGlass, kMirror});
-  add_room(forms, "cavity, cloud only emits", "isothermal-cavity",
-           {{"cloud_albedo", "0"}, {"cloud_emission", "1"}}, {kGlass, kMirror});
-  forms.push_back({"cavity from inside glass", "isothermal-cavity",
-                   with(inside, {{"medium", "tinted"}}), everywhere(kInGlass), true, from_glass,
+}
+
+void add_cavities(std::vector<ClosedForm>& forms) {
+  const char* scene = "isothermal-cavity";
+  const std::vector<Ball> balls{kGlass, kMirror};
+  add_room(forms, "cavity", scene, {}, balls, {{"path", 5}, {"bdpt", 10}, {"pssmlt", 140}},
+           {"light", 420});
+  add_room(forms, "cavity, fog in R and G", scene,
+           {{"fog_sigma_t", "0.5, 0.8, 0"}, {"fog_emission", "0.2, 0.4, 0"}}, balls,
+           {{"path", 34}, {"bdpt", 80}, {"pssmlt", 1000, kLongOnly}}, {"light", 600});
+  add_room(forms, "cavity, cloud only emits", scene,
+           {{"cloud_albedo", "0"}, {"cloud_emission", "1"}}, balls,
+           {{"path", 5}, {"bdpt", 13}, {"pssmlt", 140}}, {"light", 400});
+  forms.push_back({"cavity from inside glass",
+                   scene,
+                   {{"camera", "0.3, -0.4, -0.1"}, {"medium", "tinted"}},
+                   everywhere(kInGlass),
+                   true,
+                   {{"path", 5}, {"bdpt", 12}, {"pssmlt", 140}},
                    kSpecularFirst});
 }
 
@@ -161,35 +174,35 @@ void add_point_lights(std::vector<ClosedForm>& forms) {
                    {{"max_depth", "2"}},
                    of(plane_mirror_pixels, false),
                    false,
-                   {{"path", 5}, {"light", 200}, {"bdpt", 20}, {"pssmlt", 130}},
+                   {{"path", 5}, {"light", 130}, {"bdpt", 5}, {"pssmlt", 140}},
                    ""});
   forms.push_back({"plane mirror",
                    name,
                    {},
                    of(plane_mirror_pixels, true),
                    false,
-                   {{"light", 200}, {"bdpt", 20}, {"pssmlt", 130}},
+                   {{"light", 80}, {"bdpt", 18}, {"pssmlt", 140}},
                    no_caustic});
   forms.push_back({"point light in the picture",
                    name,
                    {{"max_depth", "2"}},
                    point_light_pixels,
                    false,
-                   {{"light", 20}, {"bdpt", 20}, {"pssmlt", 130}},
+                   {{"light", 5}, {"bdpt", 5}, {"pssmlt", 140}},
                    "path: meets no point light by chance"});
   forms.push_back({"shadow of a ball",
                    "ball-caustic",
                    {{"max_depth", "2"}, {"res", "8"}},
                    of(ball_caustic_pixels, false),
                    false,
-                   {{"path", 40}, {"light", 800}, {"bdpt", 40}, {"pssmlt", 130}},
+                   {{"path", 38}, {"light", 700}, {"bdpt", 30}, {"pssmlt", 150}},
                    ""});
   forms.push_back({"ball caustic",
                    "ball-caustic",
                    {{"res", "8"}},
                    of(ball_caustic_pixels, true),
                    false,
-                   {{"light", 400}, {"bdpt", 400}, {"pssmlt", 500}},
+                   {{"light", 600}, {"bdpt", 420}, {"pssmlt", 900}},
                    no_caustic});
 }
 
@@ -200,14 +213,14 @@ void add_airlight(std::vector<ClosedForm>& forms) {
        {},
        of(airlight_pixels, 0.01),
        false,
-       {{"path", 20}, {"bdpt", 40}, {"pssmlt", 130}},
+       {{"path", 14}, {"bdpt", 32}, {"pssmlt", 140}},
        "light: connects to scattering close to the pinhole, without a finite variance"});
   forms.push_back({"airlight, far near plane",
                    "airlight",
                    {{"near", "0.5"}},
                    of(airlight_pixels, 0.5),
                    false,
-                   {{"path", 20}, {"light", 1000}, {"bdpt", 40}, {"pssmlt", 130}},
+                   {{"path", 18}, {"light", 9500, kCostly}, {"bdpt", 60}, {"pssmlt", 140}},
                    ""});
 }
 
@@ -217,19 +230,26 @@ void add_interfaces(std::vector<ClosedForm>& forms) {
                    {},
                    fresnel_plate_pixels,
                    true,
-                   {{"path", 5}, {"bdpt", 5}, {"pssmlt", 130}},
+                   {{"path", 5}, {"bdpt", 5}, {"pssmlt", 140}},
                    kSpecularFirst});
-  const std::vector<Sampler> all{{"path", 5}, {"light", 200}, {"bdpt", 10}, {"pssmlt", 130}};
   for (const auto& [distribution, facets] :
        {std::pair("ggx", Facets::Ggx), {"beckmann", Facets::Beckmann}}) {
     const std::string name = std::string(" (") + distribution + ")";
     const Definitions distributed{{"distribution", distribution}};
-    forms.push_back({"rough conductor" + name, "rough-furnace",
-                     with(distributed, {{"bsdf", "conductor"}}), of(rough_conductor_pixels, facets),
-                     false, all, ""});
-    forms.push_back({"rough dielectric" + name, "rough-furnace",
+    forms.push_back({"rough conductor" + name,
+                     "rough-furnace",
+                     with(distributed, {{"bsdf", "conductor"}}),
+                     of(rough_conductor_pixels, facets),
+                     false,
+                     {{"path", 8}, {"light", 3500}, {"bdpt", 10}, {"pssmlt", 140}},
+                     ""});
+    forms.push_back({"rough dielectric" + name,
+                     "rough-furnace",
                      with(distributed, {{"bsdf", "dielectric"}}),
-                     of(rough_dielectric_pixels, facets), false, all, ""});
+                     of(rough_dielectric_pixels, facets),
+                     false,
+                     {{"path", 5}, {"light", 22000, kCostly}, {"bdpt", 5}, {"pssmlt", 140}},
+                     ""});
   }
 }
 
@@ -240,7 +260,8 @@ const std::vector<ClosedForm>& closed_forms() {
     std::vector<ClosedForm> list;
     add_half_spaces(list);
     add_slabs(list);
-    add_rooms(list);
+    add_enclosures(list);
+    add_cavities(list);
     add_point_lights(list);
     add_airlight(list);
     add_interfaces(list);

@@ -15,9 +15,12 @@ using ExpectedPixels = std::vector<std::optional<RGB>>;
 
 /// An estimator that samples every class of a closed form.
 struct Sampler {
+  /// The long test goes on to an error of 0.1%, or where that is dear only to 0.3%.
+  enum class Price { kCheap, kCostly, kLongOnly };
+
   std::string integrator;
-  double samples;       ///< thousands, after which all errors that are bounded are about 0.7%
-  bool costly = false;  ///< the long test stops at 0.3%
+  double samples;  ///< thousands, after which all errors that are bounded are about 0.7%
+  Price price = Price::kCheap;
 };
 
 /// A scene whose pixels are known without rendering.

@@ -24,14 +24,16 @@ constexpr int kReplicates = 64, kReplicatesOfChains = 32;
 constexpr int kTiles = 2;  ///< a side
 constexpr int kRegions = 4 + kTiles * kTiles;
 
+bool is_long() { return std::getenv("FOGBOW_LONG") != nullptr; }
+
 struct Effort {
   double samples;         ///< times those in the table
   double standard_error;  ///< at most, relative, of the picture's mean and of each channel's
   double power;           ///< at least, to detect a bias of the picture's mean by 1%
 };
 Effort effort(const Sampler& sampler) {
-  if (!std::getenv("FOGBOW_LONG")) return {1, 0.01, 0};
-  if (sampler.costly) return {8, 0.003, 0};
+  if (!is_long()) return {1, 0.01, 0};
+  if (sampler.price != Sampler::Price::kCheap) return {8, 0.003, 0};
   return {50, 0.003, 0.99};
 }
 
@@ -45,7 +47,8 @@ std::vector<Comparison> comparisons() {
   std::vector<Comparison> result;
   for (const ClosedForm& form : closed_forms())
     for (const Sampler& sampler : form.samplers)
-      result.push_back({&form, sampler, static_cast<int>(result.size())});
+      if (is_long() || sampler.price != Sampler::Price::kLongOnly)
+        result.push_back({&form, sampler, static_cast<int>(result.size())});
   return result;
 }
 int comparison_count() {
