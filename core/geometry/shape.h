@@ -15,10 +15,10 @@ namespace fogbow {
 /// A point of a surface with its tangent geometry, in world space.
 struct SurfacePoint {
   Vec3 position;
-  Vec3 n_g;        ///< unit geometric normal; decides interior (−) and exterior (+)
-  Frame shading;   ///< frame around the shading normal, n·n_g > 0
-  Vec2 uv;         ///< texture coordinates
-  Vec2 local;      ///< coordinates on the primitive (barycentric, or the shape's own)
+  Vec3 n_g;       ///< unit geometric normal; decides interior (−) and exterior (+)
+  Frame shading;  ///< frame around the shading normal, n·n_g > 0
+  Vec2 uv;        ///< texture coordinates
+  Vec2 local;     ///< coordinates on the primitive (barycentric, or the shape's own)
   std::uint32_t primitive = 0;
 };
 
@@ -44,13 +44,15 @@ struct PrimitiveBuffers {
   std::span<const std::uint32_t> indices;  ///< 3 or 4 per primitive
 };
 
-/// A triangle soup of a shape's surface with consistent winding (counter-clockwise seen from outside).
+/// A triangle soup of a shape's surface with consistent winding (counter-clockwise seen from
+/// outside).
 struct Tessellation {
   std::vector<Vec3> vertices;
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// A surface in world space; immutable. Positions are evaluated in double precision, and a hit is refined in it.
+/// A surface in world space; immutable. Positions are evaluated in double precision, and a hit is
+/// refined in it.
 class Shape {
  public:
   virtual ~Shape() = default;
@@ -65,11 +67,15 @@ class Shape {
   /// Nearest intersection with t in (ray.t_min, ray.t_max), in double precision.
   /// What double rounding cannot tell from an end of the ray is no hit; planar primitives accept
   /// barycentrics a double rounding error outside, so that shared edges have no gap.
-  /// `leaving`: the ray starts on this very primitive, at a point with a root at t = 0, which is not a hit.
+  /// `leaving`: the ray starts on this very primitive, at a point with a root at t = 0, which is
+  /// not a hit.
   virtual std::optional<PrimitiveHit> intersect(std::uint32_t primitive, const Ray& ray,
                                                 bool leaving) const = 0;
   /// A ray that starts on a planar primitive cannot meet it again.
   virtual bool planar() const = 0;
+
+  /// True only if the primitive has no point in the box; may be false where it has none either.
+  virtual bool avoids(std::uint32_t primitive, const Bounds& box) const;
 
   virtual SurfacePoint surface_point(std::uint32_t primitive, const Vec2& local) const = 0;
   virtual SurfaceDerivatives derivatives(const SurfacePoint& point) const = 0;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/geometry/sphere.h"
 
+#include <glm/common.hpp>
 #include <map>
 #include <stdexcept>
 
@@ -108,6 +109,13 @@ std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius, bool
   if (!is_finite(center) || !(radius > 0) || !std::isfinite(radius))
     throw std::domain_error("sphere needs a finite center and a positive finite radius");
   return std::make_shared<Sphere>(center, radius, flip_normals);
+}
+
+bool Sphere::avoids(std::uint32_t, const Bounds& box) const {
+  const Vec3 nearest = glm::clamp(center_, box.lo, box.hi);
+  double farthest = 0;
+  for (const Vec3& corner : box.corners()) farthest = std::fmax(farthest, length(corner - center_));
+  return length(nearest - center_) > radius_ || farthest < radius_;
 }
 
 }  // namespace fogbow

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <array>
+
 #include "core/math/vec.h"
 
 namespace fogbow {
@@ -24,6 +26,17 @@ struct Bounds {
   void extend(const Bounds& b) {
     lo = glm::min(lo, b.lo);
     hi = glm::max(hi, b.hi);
+  }
+  bool overlaps(const Bounds& b) const {
+    for (int i = 0; i < 3; ++i)
+      if (lo[i] > b.hi[i] || b.lo[i] > hi[i]) return false;
+    return true;
+  }
+  std::array<Vec3, 8> corners() const {
+    std::array<Vec3, 8> all;
+    for (int i = 0; i < 8; ++i)
+      all[i] = {i & 1 ? hi.x : lo.x, i & 2 ? hi.y : lo.y, i & 4 ? hi.z : lo.z};
+    return all;
   }
   bool empty() const { return lo.x > hi.x || lo.y > hi.y || lo.z > hi.z; }
   Vec3 center() const { return 0.5 * (lo + hi); }

@@ -72,7 +72,8 @@ bool sample_emitter(const Scene& scene, SampleStream& u, SubpathVertex& start) {
   x.id = point->id;
   x.emitter = static_cast<int>(index);
   const bool bounds_media = x.on_surface() && scene.surface(x.id.shape).medium_boundary;
-  if (!x.infinite() && !bounds_media) x.medium = scene.medium_at(x.position(), x.id);
+  if (!x.infinite() && !bounds_media)
+    x.medium = scene.medium_around_emitter(x.emitter, x.position(), x.id);
   start.pdf = scene.emitter_distribution().probability(index) * point->pdf_position;
   start.throughput = RGB(1 / start.pdf);
   start.connects = true;
@@ -114,7 +115,7 @@ void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, 
   Vertex origin = start.x;
   if (start.x.infinite()) {
     origin.point.position = direction.origin;
-    origin.medium = scene.medium_at(direction.origin);
+    origin.medium = scene.medium_around_emitter(start.x.emitter, direction.origin, kNoPrimitive);
   }
   SubpathVertex next;
   if (extend(scene, origin, direction.w, u_distance, next.x, next.edge) != ExtendResult::Reached)

@@ -213,6 +213,7 @@ void Scene::collect_emitters(const BoundaryReport& report) {
   }
   add_volume_emitters(report);
   if (emitters_.empty()) throw Error(ErrorKind::Scene, "the scene has no emitter");
+  locate_emitters();
 
   std::vector<double> weights;
   for (const auto& emitter : emitters_) {
@@ -224,6 +225,35 @@ void Scene::collect_emitters(const BoundaryReport& report) {
   if (std::ranges::all_of(weights, [](double w) { return w == 0; }))
     std::ranges::fill(weights, 1.0);
   emitter_distribution_ = DiscreteDistribution(weights);
+}
+
+/// A box that no boundary reaches into lies in one region.
+bool Scene::crosses_boundary(const Bounds& box) const {
+  for (const std::uint32_t id : boundary_shapes_) {
+    const Shape& shape = *surface(id).shape;
+    for (std::uint32_t primitive = 0; primitive < shape.primitive_count(); ++primitive)
+      if (!shape.avoids(primitive, box)) return true;
+  }
+  return false;
+}
+
+/// Light paths ask for the medium they start in: it is looked for once where it is the same all
+/// over the emitter.
+void Scene::locate_emitters() {
+  medium_around_emitter_.assign(emitters_.size(), std::nullopt);
+  for (std::uint32_t i = 0; i < description_.surfaces.size(); ++i) {
+    const int emitter = emitter_of_surface_[i];
+    if (emitter < 0 || surface(i).medium_boundary) continue;
+    const Shape& shape = *surface(i).shape;
+    if (crosses_boundary(shape.bounds())) continue;
+    const SurfacePoint x = shape.sample(Vec2(0.5));
+    medium_around_emitter_[emitter] = medium_at(x.position, {i, x.primitive});
+  }
+  for (std::size_t i = 0; i < emitters_.size(); ++i)
+    if (const auto p = point_light_position(*emitters_[i]))
+      medium_around_emitter_[i] = medium_at(*p);
+  for (const int i : infinite_emitters_)
+    medium_around_emitter_[i] = medium_at(bounds_.center() + 4 * radius_ * spread_direction(0, 1));
 }
 
 void Scene::drop_infinite_emitters_in_fog() {

@@ -21,7 +21,8 @@ struct Surface {
   std::shared_ptr<const Shape> shape;
   std::shared_ptr<const Bsdf> bsdf;
   std::shared_ptr<Emitter> emitter;  ///< null where it does not emit
-  /// Where true, the media on the two sides are those named (null: vacuum); else the surface leaves the medium unchanged.
+  /// Where true, the media on the two sides are those named (null: vacuum); else the surface leaves
+  /// the medium unchanged.
   bool medium_boundary = false;
   std::shared_ptr<const Medium> interior, exterior;
   std::string id;
@@ -36,13 +37,14 @@ struct IntegratorSettings {
 
 struct SceneDescription {
   std::vector<Surface> surfaces;
-  std::vector<std::shared_ptr<Emitter>> emitters;  ///< those that are on no surface: point, constant
+  std::vector<std::shared_ptr<Emitter>>
+      emitters;  ///< those that are on no surface: point, constant
   std::shared_ptr<const Sensor> sensor;
   std::shared_ptr<const Medium> sensor_medium;
   bool sensor_medium_declared = false;
   FilmSettings film;
   IntegratorSettings integrator;
-  std::string title;           ///< file name or what the user calls it
+  std::string title;  ///< file name or what the user calls it
   std::uint64_t content_hash = 0;
 };
 
@@ -67,16 +69,25 @@ class Scene {
   const FilmSettings& film() const { return description_.film; }
   const SceneDescription& description() const { return description_; }
 
-  /// The medium at a point that lies on no medium boundary (null: vacuum): that of the region between the boundaries which holds it.
+  /// The medium at a point that lies on no medium boundary (null: vacuum): that of the region
+  /// between the boundaries which holds it.
   const Medium* medium_at(const Vec3& p, PrimitiveId on = kNoPrimitive) const;
   bool has_media() const { return has_media_; }
   bool has_null_surfaces() const { return has_null_surfaces_; }
 
-  // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen in proportion to their power.
+  // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen in
+  // proportion to their power.
   std::size_t emitter_count() const { return emitters_.size(); }
   const Emitter& emitter(std::size_t i) const { return *emitters_[i]; }
   const DiscreteDistribution& emitter_distribution() const { return emitter_distribution_; }
-  /// Index of a surface's emitter, or of a medium's Volume emitter, in the list; −1 if it does not emit.
+  /// The medium around a point of an emitter that lies on no medium boundary; for infinite emitters
+  /// the one beyond the scene.
+  const Medium* medium_around_emitter(int emitter, const Vec3& p, PrimitiveId on) const {
+    const auto& known = medium_around_emitter_[emitter];
+    return known ? *known : medium_at(p, on);
+  }
+  /// Index of a surface's emitter, or of a medium's Volume emitter, in the list; −1 if it does not
+  /// emit.
   int emitter_of_surface(std::uint32_t shape) const { return emitter_of_surface_[shape]; }
   int emitter_of_medium(const Medium* medium) const;
   const std::vector<int>& infinite_emitters() const { return infinite_emitters_; }
@@ -101,6 +112,8 @@ class Scene {
   void compare(const BoundaryReport& report, const Vec3& p, const std::string& what);
   void collect_emitters(const BoundaryReport& report);
   void drop_infinite_emitters_in_fog();
+  void locate_emitters();
+  bool crosses_boundary(const Bounds& box) const;
   void add_volume_emitters(const BoundaryReport& report);
   Bounds emission_bounds(const Medium* medium, const BoundaryReport& report) const;
   void warn(std::string message);
@@ -112,6 +125,8 @@ class Scene {
   std::vector<Vec3> anchors_;                   ///< points on boundaries to look at
   std::vector<std::shared_ptr<Emitter>> emitters_;
   std::vector<int> emitter_of_surface_;
+  std::vector<std::optional<const Medium*>>
+      medium_around_emitter_;  ///< where it is the same everywhere
   std::vector<std::pair<const Medium*, int>> emitter_of_medium_;
   std::vector<int> infinite_emitters_;
   DiscreteDistribution emitter_distribution_;
