@@ -76,7 +76,7 @@ TEST_P(Techniques, ReducedContributionFollowsFromTheTracedDensity) {
   // f/p is the same in both languages: for s = k − 1 vertices from the light, p of the reduced one
   // is built of real densities.
   int compared = 0;
-  for_each_connection(3000, 7, [&](const Path& path, int s, const Connection& c) {
+  for_each_connection(6000, 7, [&](const Path& path, int s, const Connection& c) {
     if (path[0].infinite() && s == 0) return;  // the last edge has no length to reduce
     double chain_factor = 1;  // p_s over its counterpart without deltas
     const auto chain = [&](int a, int step) {
