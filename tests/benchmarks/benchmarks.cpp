@@ -1,0 +1,143 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// Usage: fogbow_benchmarks SCENE.xml... [Google Benchmark's flags]; every scene by rays alone, by
+// each estimator and by a chain.
+#include <benchmark/benchmark.h>
+
+#include <filesystem>
+
+#include "core/estimators/sampling.h"
+#include "core/math/random.h"
+#include "core/math/warp.h"
+#include "core/scene_io/load.h"
+#include "core/util/log.h"
+#include "media/registry.h"
+#include "mlt/chain.h"
+#include "mlt/mutations/primary_sample_mutations.h"
+#include "mlt/normalization.h"
+
+namespace fogbow {
+namespace {
+
+using benchmark::Counter;
+
+constexpr std::uint64_t kSeed = 1;
+
+Counter rate(double count) { return Counter(count, Counter::kIsRate); }
+
+/// Rays from the camera, and cosine-distributed ones from where those arrive.
+struct RaySet {
+  std::vector<Ray> primary, bounce;
+  std::vector<PrimitiveId> bounce_from;
+
+  explicit RaySet(const Scene& scene) {
+    Rng rng(kSeed, RngDomain::Test, 0, 0);
+    for (int i = 0; i < 1 << 16; ++i) {
+      const Vec3 o = scene.sensor().sample_position(uniform2(rng));
+      const Ray ray{o, scene.sensor().sample_direction(o, uniform2(rng)).w};
+      primary.push_back(ray);
+      const auto hit = scene.accel().intersect(ray);
+      if (!hit) continue;
+      const SurfacePoint x = scene.surface_point(*hit);
+      const Frame frame(dot(x.n_g, ray.d) < 0 ? x.n_g : -x.n_g);
+      bounce.push_back({x.position, frame.to_world(warp::sample_cosine_hemisphere(uniform2(rng)))});
+      bounce_from.push_back(hit->id);
+    }
+  }
+};
+
+void trace(benchmark::State& state, const Scene& scene, bool bounce) {
+  const RaySet set(scene);
+  const auto& rays = bounce ? set.bounce : set.primary;
+  std::size_t i = 0;
+  for (auto _ : state) {
+    benchmark::DoNotOptimize(
+        scene.accel().intersect(rays[i], bounce ? set.bounce_from[i] : kNoPrimitive));
+    if (++i == rays.size()) i = 0;
+  }
+  state.counters["rays/s"] = rate(static_cast<double>(state.iterations()));
+}
+
+void estimate(benchmark::State& state, const Estimator& estimator) {
+  Workspace w;
+  std::uint64_t i = 0;
+  const std::uint64_t before = rays_traced();
+  for (auto _ : state) {
+    Rng rng(kSeed, RngDomain::Sampling, i++, 0);
+    RandomStream stream(rng);
+    estimator.sample(stream, stream, w);
+    benchmark::DoNotOptimize(w.contributions.data());
+  }
+  const auto rays = static_cast<double>(rays_traced() - before);
+  state.counters["samples/s"] = rate(static_cast<double>(state.iterations()));
+  state.counters["rays/s"] = rate(rays);
+  state.counters["rays/sample"] = rays / static_cast<double>(state.iterations());
+}
+
+void mutate(benchmark::State& state, const Estimator& estimator) {
+  const auto table = make_primary_sample_mutations(estimator, 0.3);
+  const Bootstrap bootstrap(estimator, kSeed, 2048);
+  Chain<PrimarySample> chain(bootstrap.start(0, 0));
+  chain.prepare(table.size());
+  const std::uint64_t before = rays_traced();
+  for (auto _ : state) {
+    Rng rng(kSeed, RngDomain::Chain, 0, chain.steps());
+    chain.step(table, rng, [](const PrimarySample& x, double weight) {
+      benchmark::DoNotOptimize(x.f_star() * weight);
+    });
+  }
+  const auto rays = static_cast<double>(rays_traced() - before);
+  state.counters["mutations/s"] = rate(static_cast<double>(state.iterations()));
+  state.counters["rays/s"] = rate(rays);
+  state.counters["rays/mutation"] = rays / static_cast<double>(state.iterations());
+}
+
+/// A scene with its estimators; all live until the program ends, as registered benchmarks refer to
+/// them.
+struct Subject {
+  Scene scene;
+  std::unique_ptr<Estimator> path, light, bdpt;
+
+  explicit Subject(SceneDescription description)
+      : scene(std::move(description)),
+        path(make_path_tracer(scene, {})),
+        light(make_light_tracer(scene, {})),
+        bdpt(make_bdpt(scene, {})) {}
+
+  void register_all(const std::string& name) {
+    const auto add = [&](const char* what, auto&& run) {
+      benchmark::RegisterBenchmark((name + "/" + what).c_str(), run)->Unit(benchmark::kMicrosecond);
+    };
+    add("primary rays", [this](benchmark::State& s) { trace(s, scene, false); });
+    add("bounce rays", [this](benchmark::State& s) { trace(s, scene, true); });
+    add("path", [this](benchmark::State& s) { estimate(s, *path); });
+    add("light", [this](benchmark::State& s) { estimate(s, *light); });
+    add("bdpt", [this](benchmark::State& s) { estimate(s, *bdpt); });
+    add("pssmlt", [this](benchmark::State& s) { mutate(s, *bdpt); });
+  }
+};
+
+std::string scene_name(const std::filesystem::path& file) {
+  return file.stem() == "scene" ? file.parent_path().filename().string() : file.stem().string();
+}
+
+}  // namespace
+}  // namespace fogbow
+
+int main(int argc, char** argv) {
+  using namespace fogbow;
+  benchmark::Initialize(&argc, argv);
+  set_log_level(LogLevel::Error);
+  std::vector<std::unique_ptr<Subject>> subjects;
+  try {
+    for (int i = 1; i < argc; ++i) {
+      std::vector<std::string> warnings;
+      subjects.push_back(std::make_unique<Subject>(
+          load_mitsuba_xml(argv[i], builtin_media(), LoadOptions{}, warnings)));
+      subjects.back()->register_all(scene_name(argv[i]));
+    }
+  } catch (const Error& e) {
+    log(LogLevel::Error, e.what());
+    return static_cast<int>(e.kind());
+  }
+  benchmark::RunSpecifiedBenchmarks();
+}
