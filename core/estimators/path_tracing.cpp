@@ -28,10 +28,7 @@ struct Arrival {
 class PathTracer final : public Estimator {
  public:
   PathTracer(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene),
-        max_vertices_(settings.max_depth + 1),
-        rr_depth_(settings.rr_depth),
-        equiangular_(scene.has_media()) {}
+      : scene_(scene), max_vertices_(settings.max_depth + 1), rr_depth_(settings.rr_depth) {}
 
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override;
   const char* name() const override { return "path"; }
@@ -51,6 +48,11 @@ class PathTracer final : public Estimator {
   /// f/p of one light point seen from y, and the density of running into it instead.
   std::optional<std::pair<RGB, double>> see(const SubpathVertex& light, const Vertex& y,
                                             const Vec3& w_eye) const;
+  /// False where the flight cannot meet a medium: equiangular distances would be wasted on it.
+  bool may_scatter(const Flight& flight) const {
+    return is_sampled(medium_toward(scene_, flight.x, flight.w)) ||
+           (scene_.has_media() && scene_.has_null_surfaces());
+  }
   warp::Equiangular equiangular_law(const Flight& flight, const Vec3& light) const;
   /// How many times likelier an equiangular distance towards `light` is than the free flight that
   /// led to y.
@@ -58,7 +60,6 @@ class PathTracer final : public Estimator {
 
   const Scene& scene_;
   int max_vertices_, rr_depth_;
-  bool equiangular_;
 };
 
 /// On the whole way through the scene: where the wall is, free flight need not have found out.
@@ -71,7 +72,7 @@ warp::Equiangular PathTracer::equiangular_law(const Flight& flight, const Vec3& 
 }
 
 double PathTracer::share(const Flight& flight, const Arrival& at, const Vertex& light) const {
-  if (!equiangular_ || !at.y.in_medium() || light.infinite()) return 0;
+  if (!may_scatter(flight) || !at.y.in_medium() || light.infinite()) return 0;
   const warp::Equiangular law = equiangular_law(flight, light.position());
   const double t = at.edge.length;
   if (!(law.distance > 0) || !(t > law.t0 && t < law.t1)) return 0;
@@ -162,7 +163,7 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
 
 RGB PathTracer::direct(const Flight& flight, const Arrival& at, SampleStream& u) const {
   SubpathVertex light;
-  if (!sample_emitter(scene_, u, light) || !connectible(scene_, at.y)) return RGB(0);
+  if (!connectible(scene_, at.y) || !sample_emitter(scene_, u, light)) return RGB(0);
   const auto seen = see(light, at.y, -flight.w);
   if (!seen) return RGB(0);
   const double pdf_both = light.pdf * (1 + share(flight, at, light.x));
@@ -198,7 +199,7 @@ void PathTracer::sample(SampleStream& light, SampleStream& eye, Workspace& w) co
   for (;;) {
     const int k = flight.vertices + 1;  // vertices of the path that ends at the next one
     if (k > max_vertices_) return;
-    if (equiangular_ && k < max_vertices_) add(direct_equiangular(flight, light), k + 1, 1);
+    if (k < max_vertices_ && may_scatter(flight)) add(direct_equiangular(flight, light), k + 1, 1);
     if (!arrive(flight, eye, at)) return;
     if (at.y.infinite()) {
       for (const int emitter : scene_.infinite_emitters()) {
