@@ -8,6 +8,7 @@ void ChainRecord::serialize(std::ostream& out) const {
   write_binary(out, independent_squares);
   write_binary(out, independent_steps);
   write_binary_vector(out, length_share);
+  write_binary_vector(out, length_squares);
 }
 
 ChainRecord ChainRecord::deserialize(std::istream& in) {
@@ -16,6 +17,8 @@ ChainRecord ChainRecord::deserialize(std::istream& in) {
   record.independent_squares = read_binary<double>(in);
   record.independent_steps = read_binary<std::uint64_t>(in);
   record.length_share = read_binary_vector<double>(in, 1 << 20);
+  record.length_squares = read_binary_vector<double>(in, 1 << 20);
+  record.of_state_.resize(record.length_share.size());
   return record;
 }
 

@@ -16,10 +16,30 @@ namespace fogbow {
 struct ChainRecord {
   double independent_f_star = 0, independent_squares = 0;  ///< Σ f*, Σ f*² over independent steps
   std::uint64_t independent_steps = 0;
-  std::vector<double> length_share;  ///< expected-value time share of paths of k vertices, by k
+  /// By k: expected-value time share of paths of k vertices, and the same of the share's square.
+  std::vector<double> length_share, length_squares;
+
+  /// Luminance of one contribution of the current state, as a part of f*.
+  void gather(int k, double part) {
+    const auto size = static_cast<std::size_t>(k) + 1;
+    if (of_state_.size() < size)
+      for (auto* v : {&of_state_, &length_share, &length_squares}) v->resize(size);
+    of_state_[k] += part;
+  }
+  /// All contributions of a state of this weight have been gathered.
+  void settle(double weight) {
+    for (std::size_t k = 0; k < of_state_.size(); ++k) {
+      length_share[k] += weight * of_state_[k];
+      length_squares[k] += weight * sqr(of_state_[k]);
+      of_state_[k] = 0;
+    }
+  }
 
   void serialize(std::ostream& out) const;
   static ChainRecord deserialize(std::istream& in);
+
+ private:
+  std::vector<double> of_state_;
 };
 
 /// Film::kGroups independent groups of chains of one State; every chain is a function of (seed,
@@ -99,13 +119,12 @@ class ChainEnsemble {
  private:
   auto splatter(std::size_t i, Rng& offsets, Film& film) {
     return [this, i, &offsets, &film](const State& x, double weight) {
-      std::vector<double>& share = records_[i].length_share;
+      ChainRecord& record = records_[i];
       for (const Contribution& c : x.contributions()) {
-        const RGB value = c.value * (weight / x.f_star());
-        film.splat(c.raster, value, group_of(i), uniform2(offsets));
-        if (share.size() <= static_cast<std::size_t>(c.k)) share.resize(c.k + 1);
-        share[c.k] += luminance(value);
+        film.splat(c.raster, c.value * (weight / x.f_star()), group_of(i), uniform2(offsets));
+        record.gather(c.k, luminance(c.value) / x.f_star());
       }
+      record.settle(weight);
     };
   }
 

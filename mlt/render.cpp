@@ -8,6 +8,7 @@
 #include "core/estimators/sampling.h"
 #include "core/util/parallel.h"
 #include "mlt/chain_ensemble.h"
+#include "mlt/diagnostics.h"
 #include "mlt/mutations/primary_sample_mutations.h"
 #include "mlt/render_settings.h"
 
@@ -22,6 +23,8 @@ constexpr int kRadianceFractionBits = 30;
 /// Standard error of b between groups, relative to b, above which the groups are said to disagree:
 /// the picture's brightness is then anyone's guess.
 constexpr double kDisagreement = 0.1;
+/// Path lengths that carry less of the light are left out of the verdict on convergence.
+constexpr double kNotableShare = 0.01;
 /// Steps of every chain between two looks at the clock.
 constexpr std::uint64_t kStepsPerRound = 64;
 
@@ -230,6 +233,19 @@ struct ChainRender {
     return result;
   }
 
+  /// Of the time share of one path length, over all chains.
+  Convergence length_convergence(int k) const {
+    std::vector<ChainMoments> moments(ensemble.size());
+    std::vector<double> steps(ensemble.size());
+    for (std::size_t i = 0; i < ensemble.size(); ++i) {
+      const ChainRecord& r = ensemble.record(i);
+      if (static_cast<std::size_t>(k) < r.length_share.size())
+        moments[i] = {r.length_share[k], r.length_squares[k]};
+      steps[i] = static_cast<double>(ensemble.chain(i).steps());
+    }
+    return convergence(moments, steps);
+  }
+
   std::vector<MutationReport> reports() const {
     std::vector<MutationReport> result;
     for (std::size_t m = 0; m < table.size(); ++m) {
@@ -243,6 +259,24 @@ struct ChainRender {
     return result;
   }
 };
+
+/// R̂ and effective sample size of each notable path length, and the worst of them.
+void diagnose(const ChainRender& r, double render_seconds, RenderResult& result) {
+  double r_hat = 0, ess = std::numeric_limits<double>::infinity();
+  for (const ClassShare& length : result.lengths) {
+    if (length.value < kNotableShare * result.b) continue;
+    const Convergence c = r.length_convergence(length.k);
+    const std::string suffix = "_k" + std::to_string(length.k);
+    result.diagnostics["R_hat" + suffix] = c.r_hat;
+    result.diagnostics["ess" + suffix] = c.effective_samples;
+    r_hat = std::max(r_hat, c.r_hat);
+    ess = std::min(ess, c.effective_samples);
+  }
+  if (r_hat == 0) return;
+  result.diagnostics["R_hat"] = r_hat;
+  result.diagnostics["ess"] = ess;
+  result.diagnostics["ess_per_second"] = ess / std::fmax(render_seconds, 1e-9);
+}
 
 RenderResult render_chains(const Scene& scene, const RenderOptions& options,
                            const RenderSettings& settings, Session& session) {
@@ -281,6 +315,7 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
   result.groups_disagree = n.standard_error() > kDisagreement * n.b();
   result.diagnostics["normalization_chi2"] = n.disagreement();
   result.diagnostics["normalization_samples"] = static_cast<double>(n.samples());
+  diagnose(r, session.render_seconds(), result);
   result.non_finite = film.refused();
   for (const MutationReport& m : result.mutations)
     if (const auto it = m.rejected.find("non-finite"); it != m.rejected.end())
