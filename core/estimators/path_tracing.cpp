@@ -72,7 +72,7 @@ warp::Equiangular PathTracer::equiangular_law(const Flight& flight, const Vec3& 
 }
 
 double PathTracer::share(const Flight& flight, const Arrival& at, const Vertex& light) const {
-  if (!may_scatter(flight) || !at.y.in_medium() || light.infinite()) return 0;
+  if (!at.y.in_medium() || !may_scatter(flight) || light.infinite()) return 0;
   const warp::Equiangular law = equiangular_law(flight, light.position());
   const double t = at.edge.length;
   if (!(law.distance > 0) || !(t > law.t0 && t < law.t1)) return 0;
@@ -211,8 +211,12 @@ void PathTracer::sample(SampleStream& light, SampleStream& eye, Workspace& w) co
     add(emission(before, previous, flight, at), k, 0);
     if (k == max_vertices_) return;
     add(direct(flight, at, light), k + 1, 1);
-    before = flight;
-    previous = at;
+    // Only at a medium vertex is the flight that led there asked for again.
+    previous.y.kind = at.y.kind;
+    if (at.y.in_medium()) {
+      before = flight;
+      previous = at;
+    }
     if (!scatter_on(at, eye, flight)) return;
   }
 }
