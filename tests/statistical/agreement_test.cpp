@@ -1,0 +1,174 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// The four integrators on the scenes built in code: each is compared with bdpt on exactly the paths
+// that both can make (validation 2 and "Power" of the design).
+#include <gtest/gtest.h>
+
+#include <cstdlib>
+
+#include "core/estimators/sampling.h"
+#include "core/geometry/shapes.h"
+#include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/emitters.h"
+#include "core/scene/sensors.h"
+#include "tests/helpers/test_scenes.h"
+#include "tests/statistical/agreement_sampling.h"
+
+namespace fogbow {
+namespace {
+
+using namespace testing;
+
+constexpr int kLongest = 7;      // vertices
+constexpr int kReplicates = 64;  // of independent samples, and renders by chains
+/// An upper bound on the tests of this file together; counted below.
+constexpr int kTests = 1100, kTestsOfOneScene = 100;
+const double kLevel = sidak(kSuiteFalseAlarm, kTests);
+
+/// In the long suite what validation asks for. In the fast one as much as seconds allow: less
+/// where much light reaches the eye only by paths that run into the lamp through glass.
+Precision precision(const std::string& scene) {
+  if (std::getenv("FOGBOW_LONG")) return {0.01, 0.05};
+  if (scene == "water" || scene == "fog-in-glass") return {0.25, 1};
+  if (scene == "glass-sphere-fog" || scene == "two-kinds-of-glass") return {0.15, 0.6};
+  return {0.08, 0.4};
+}
+
+std::string test_name(const ::testing::TestParamInfo<TestScene>& info) {
+  std::string name = info.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+}
+
+class Agreement : public ::testing::TestWithParam<TestScene> {};
+
+TEST_P(Agreement, EachIntegratorEqualsBdptOnWhatBothCanMake) {
+  const std::string& name = GetParam().name;
+  const Scene scene(GetParam().make());
+  const EstimatorSettings settings{.max_depth = kLongest - 1};
+  const Precision wanted = precision(name);
+  const std::uint64_t seed = suite_seed();
+  const auto run = [&](const Estimator& estimator, bool classified, std::uint64_t stream) {
+    return sample_until(
+        [&](std::uint64_t samples, std::uint64_t s) {
+          return sample(scene, estimator, classified, kLongest, kReplicates, samples, s);
+        },
+        512, wanted, kLevel, seed + stream);
+  };
+  const auto at = [](const Sampling& s, Restriction which) -> const Replicates& {
+    return s[static_cast<std::size_t>(which)];
+  };
+  const Sampling bdpt = run(*make_bdpt(scene, settings), true, 10);
+  const Sampling path = run(*make_path_tracer(scene, settings), false, 20);
+  const Sampling light = run(*make_light_tracer(scene, settings), true, 30);
+  const Sampling chains = sample_until(
+      [&](std::uint64_t mutations, std::uint64_t s) {
+        return render_chains(scene, kLongest, kReplicates, mutations, s);
+      },
+      2048, wanted, kLevel, seed + 40);
+
+  int tests = expect_agreement(name + ": bdpt, path", at(bdpt, Restriction::ByPath),
+                               at(path, Restriction::All), wanted, kLevel);
+  tests += expect_agreement(name + ": bdpt, light", at(bdpt, Restriction::ByLight),
+                            at(light, Restriction::ByLight), wanted, kLevel);
+  tests += expect_agreement(name + ": bdpt, pssmlt", at(bdpt, Restriction::All),
+                            at(chains, Restriction::All), wanted, kLevel);
+  EXPECT_LE(tests, kTestsOfOneScene);
+  const double all = at(bdpt, Restriction::All).mean().mean;
+  std::printf("%-44s path can make %.1f%%, light %.1f%% (beyond the lens) of the light\n",
+              name.c_str(), 100 * at(bdpt, Restriction::ByPath).mean().mean / all,
+              100 * at(bdpt, Restriction::ByLight).mean().mean / all);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Agreement, ::testing::ValuesIn(test_scenes()), test_name);
+
+/// Balls of few triangles with interpolated normals, which stand far off the geometric ones: the
+/// adjoint factor of light paths is large.
+std::shared_ptr<const Shape> coarse_ball(const Vec3& center, double radius) {
+  constexpr std::uint32_t kRings = 8, kSectors = 12;
+  TriangleMeshData mesh;
+  for (std::uint32_t j = 0; j <= kRings; ++j)
+    for (std::uint32_t i = 0; i < kSectors; ++i) {
+      const double theta = kPi * j / kRings, phi = 2 * kPi * i / kSectors;
+      const Vec3 n(std::sin(theta) * std::cos(phi), std::cos(theta),
+                   std::sin(theta) * std::sin(phi));
+      mesh.positions.push_back(center + radius * n);
+      mesh.normals.push_back(n);
+    }
+  const auto vertex = [&](std::uint32_t j, std::uint32_t i) { return j * kSectors + i % kSectors; };
+  for (std::uint32_t j = 0; j < kRings; ++j)
+    for (std::uint32_t i = 0; i < kSectors; ++i) {
+      if (j > 0) mesh.triangles.push_back({vertex(j, i), vertex(j, i + 1), vertex(j + 1, i + 1)});
+      if (j + 1 < kRings)
+        mesh.triangles.push_back({vertex(j, i), vertex(j + 1, i + 1), vertex(j + 1, i)});
+    }
+  return make_mesh(std::move(mesh));
+}
+
+SceneDescription shading_normals_scene() {
+  SceneDescription d = make_test_scene("surfaces");
+  d.surfaces.resize(2);  // floor and lamp
+  const auto add = [&](std::shared_ptr<const Shape> shape, std::shared_ptr<const Bsdf> bsdf) {
+    Surface s;
+    s.shape = std::move(shape);
+    s.bsdf = std::move(bsdf);
+    s.id = "ball " + std::to_string(d.surfaces.size());
+    d.surfaces.push_back(std::move(s));
+  };
+  add(coarse_ball(Vec3(-0.6, -0.4, 0), 0.55), make_twosided(make_diffuse(RGB(0.9, 0.7, 0.5))));
+  add(coarse_ball(Vec3(0.6, -0.4, 0), 0.55),
+      make_rough_dielectric({MicrofacetKind::Beckmann, 0.5, 0.5}, 1.5));
+  return d;
+}
+
+TEST(ShadingNormals, PathTracingEqualsLightTracing) {
+  const Scene scene(shading_normals_scene());
+  const EstimatorSettings settings{.max_depth = kLongest - 1};
+  const Precision wanted = precision("shading normals");
+  const auto run = [&](const Estimator& estimator, std::uint64_t stream) {
+    return sample_until(
+        [&](std::uint64_t samples, std::uint64_t s) {
+          return sample(scene, estimator, false, kLongest, kReplicates, samples, s);
+        },
+        512, wanted, kLevel, suite_seed() + stream);
+  };
+  const int tests = expect_agreement(
+      "shading normals: path, light", run(*make_path_tracer(scene, settings), 50)[0],
+      run(*make_light_tracer(scene, settings), 60)[0], wanted, kLevel);
+  EXPECT_LE(tests + static_cast<int>(test_scenes().size()) * kTestsOfOneScene, kTests);
+}
+
+/// Images of one path length each, from the same samples, add up to the whole.
+TEST(Lengths, ImagesOfOneLengthSumToTheWhole) {
+  constexpr int kRounds = 20, kExponent = -40;
+  for (const TestScene& s : test_scenes()) {
+    const Scene scene(s.make());
+    const EstimatorSettings settings{.max_depth = kLongest - 1};
+    for (const auto& estimator :
+         {make_path_tracer(scene, settings).release(), make_light_tracer(scene, settings).release(),
+          make_bdpt(scene, settings).release()}) {
+      const std::unique_ptr<Estimator> owner(estimator);
+      const auto render = [&](int only_length) {
+        IndependentSampling sampling(*estimator, scene.film(), 3, kExponent, only_length);
+        for (int i = 0; i < kRounds; ++i) sampling.run_round();
+        return sampling.develop();
+      };
+      const Image whole = render(0);
+      std::vector<double> sum(whole.pixels.size());
+      int lit = 0;
+      for (int k = 2; k <= kLongest; ++k) {
+        const Image part = render(k);
+        for (std::size_t i = 0; i < sum.size(); ++i) sum[i] += part.pixels[i];
+        lit += *std::max_element(part.pixels.begin(), part.pixels.end()) > 0;
+      }
+      EXPECT_GT(lit, 2) << s.name << ", " << estimator->name();
+      for (std::size_t i = 0; i < sum.size(); ++i)
+        if (i % whole.channels.size() < 3) {
+          ASSERT_NEAR(sum[i], whole.pixels[i], 1e-6 * whole.pixels[i])
+              << s.name << ", " << estimator->name();
+        }
+    }
+  }
+}
+
+}  // namespace
+}  // namespace fogbow

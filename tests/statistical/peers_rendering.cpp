@@ -1,0 +1,161 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "tests/statistical/peers_rendering.h"
+
+#include "core/estimators/sampling.h"
+#include "core/image/image_io.h"
+#include "core/path/path.h"
+#include "core/util/parallel.h"
+#include "mlt/render.h"
+
+namespace fogbow::testing {
+
+namespace {
+
+/// Uniform numbers whose first two lie in one pixel.
+class PixelStream final : public SampleStream {
+ public:
+  PixelStream(Rng& rng, const Vec2& corner, const Vec2& size)
+      : rng_(rng), corner_(corner), size_(size) {}
+  double next() override {
+    const double u = rng_.uniform();
+    if (count_ == 2) return u;
+    const int axis = count_++;
+    return std::fmin(corner_[axis] + u * size_[axis], kOneMinusEpsilon);
+  }
+
+ private:
+  Rng& rng_;
+  Vec2 corner_, size_;
+  int count_ = 0;
+};
+
+/// Part by which the fault brightens a path that next-event estimation can make.
+double shadow_ray_excess(const Path& path) {
+  const Vertex &x1 = path[0], &x2 = path[1];
+  if (path.size() < 3 || x1.infinite() || x1.degenerate || x2.degenerate || !x1.medium) return 0;
+  const double skipped = kMitsubaShadowEpsilon * length(x2.position() - x1.position());
+  return std::expm1(skipped * max_component(x1.medium->sigma_t(x1.position())));
+}
+
+Tiles empty_tiles(const Scene& scene, int replicates) {
+  const auto [width, height] = rendered_size(scene.film());
+  FOGBOW_CHECK(width % kTile == 0 && height % kTile == 0);
+  const auto count = static_cast<std::size_t>(width / kTile) * (height / kTile);
+  return {width / kTile, std::vector(replicates, std::vector<double>(count)),
+          std::vector<double>(count)};
+}
+
+}  // namespace
+
+Estimate Tiles::estimate(const std::vector<std::size_t>& tiles) const {
+  std::vector<double> values;
+  for (const auto& replicate : replicates) {
+    double sum = 0;
+    for (const std::size_t i : tiles) sum += replicate[i];
+    values.push_back(sum / static_cast<double>(tiles.size()));
+  }
+  return testing::estimate(values);
+}
+
+double Tiles::mean_excess(const std::vector<std::size_t>& tiles) const {
+  double sum = 0;
+  for (const std::size_t i : tiles) sum += excess[i];
+  return sum / static_cast<double>(tiles.size());
+}
+
+Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_excess, int replicates,
+                   int rounds, std::uint64_t seed) {
+  const auto [width, height] = rendered_size(scene.film());
+  const Vec2 pixel(1.0 / width, 1.0 / height);
+  Tiles tiles = empty_tiles(scene, replicates);
+  std::vector<std::vector<double>> excess(replicates, std::vector<double>(tiles.count()));
+  const int down = height / kTile;
+  parallel_for(replicates, [&, width = width, height = height](std::int64_t r) {
+    Workspace w;
+    for (int i = 0; i < rounds * width * height; ++i) {
+      const int x = i % width, y = i / width % height;
+      Rng rng(seed, RngDomain::Test, static_cast<std::uint64_t>(r), static_cast<std::uint64_t>(i));
+      PixelStream eye(rng, Vec2(x, y) * pixel, pixel);
+      RandomStream light(rng);
+      estimator.sample(light, eye, w);
+      for (const Contribution& c : w.contributions) {
+        const auto tile = std::min(static_cast<std::size_t>(c.raster.y * down),
+                                   static_cast<std::size_t>(down - 1)) *
+                              tiles.across +
+                          std::min(static_cast<std::size_t>(c.raster.x * tiles.across),
+                                   static_cast<std::size_t>(tiles.across - 1));
+        const double value = luminance(c.value);
+        tiles.replicates[r][tile] += value;
+        if (with_excess)
+          excess[r][tile] += value * shadow_ray_excess(assemble(w.light, c.s, w.eye, c.t));
+      }
+    }
+    FOGBOW_CHECK(w.refused == 0);
+  });
+  // The mean over all samples of what lands on a tile, times the number of tiles, is its mean.
+  const double scale = static_cast<double>(tiles.count()) / rounds / width / height;
+  for (int r = 0; r < replicates; ++r)
+    for (std::size_t i = 0; i < tiles.count(); ++i) {
+      tiles.replicates[r][i] *= scale;
+      tiles.excess[i] += excess[r][i] * scale / replicates;
+    }
+  return tiles;
+}
+
+Tiles render_tiles_by_chains(const Scene& scene, int max_depth, int replicates,
+                             double mutations_per_pixel, std::uint64_t seed) {
+  Tiles tiles = empty_tiles(scene, replicates);
+  RenderOptions options;
+  options.integrator = "pssmlt";
+  options.overrides = {{"max_depth", std::to_string(max_depth)}};
+  options.samples_per_pixel = mutations_per_pixel;
+  for (int r = 0; r < replicates; ++r) {
+    options.seed = seed + static_cast<std::uint64_t>(r) * 0x9E3779B97F4A7C15;
+    const Image image = render(scene, options).image;
+    for (int y = 0; y < image.height; ++y)
+      for (int x = 0; x < image.width; ++x)
+        tiles.replicates[r][y / kTile * tiles.across + x / kTile] +=
+            luminance(RGB(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2))) /
+            (kTile * kTile);
+  }
+  return tiles;
+}
+
+Estimate Reference::estimate(const std::vector<std::size_t>& tiles, const Tiles& like) const {
+  // Each pixel's variance comes from tens of renders: together they are known well.
+  constexpr double kDegreesOfFreedom = 1e4;
+  double sum = 0, variance = 0;
+  for (const std::size_t i : tiles) {
+    const int x0 = static_cast<int>(i) % like.across * kTile,
+              y0 = static_cast<int>(i) / like.across * kTile;
+    for (int y = y0; y < y0 + kTile; ++y)
+      for (int x = x0; x < x0 + kTile; ++x) {
+        const auto at = [&](const Image& image) {
+          return luminance(RGB(image.at(x, y, 0), image.at(x, y, 1), image.at(x, y, 2)));
+        };
+        sum += at(mean);
+        // Channels of one path go together: their errors add up.
+        variance += sqr(at(error));
+      }
+  }
+  const double pixels = static_cast<double>(tiles.size()) * kTile * kTile;
+  return {sum / pixels, std::sqrt(variance) / pixels, kDegreesOfFreedom};
+}
+
+Reference read_reference(const std::string& name, const Scene& scene) {
+  const FilmSettings& film = scene.film();
+  const auto [width, height] = rendered_size(film);
+  const auto crop = [&, width = width, height = height](const std::string& file) {
+    const Image whole = read_image("scenes/" + name + "/" + file);
+    const int rgb[] = {whole.channel("R"), whole.channel("G"), whole.channel("B")};
+    Image part(width, height, {"R", "G", "B"});
+    for (int y = 0; y < height; ++y)
+      for (int x = 0; x < width; ++x)
+        for (int c = 0; c < 3; ++c)
+          part.at(x, y, c) = whole.at(x + film.crop_x, y + film.crop_y, rgb[c]);
+    return part;
+  };
+  return {crop("reference.exr"), crop("stderr.exr")};
+}
+
+}  // namespace fogbow::testing

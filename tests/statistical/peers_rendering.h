@@ -1,0 +1,47 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <array>
+#include <string>
+#include <vector>
+
+#include "core/estimators/estimator.h"
+#include "core/image/image.h"
+#include "core/scene/scene.h"
+#include "tests/helpers/statistics.h"
+
+namespace fogbow::testing {
+
+inline constexpr int kTile = 16;  // pixels
+
+/// Mitsuba 3 ends its shadow rays this part of their length before the lamp (ShadowEpsilon in
+/// single precision) and takes the fog from the lamp to there for empty.
+inline constexpr double kMitsubaShadowEpsilon = 8.940696716308594e-4;
+
+/// Mean luminance of tiles.
+struct Tiles {
+  int across = 0;
+  std::vector<std::vector<double>> replicates;
+  /// By how much Mitsuba's fault makes a tile too bright at most: every path whose x₂ can be
+  /// connected to a lamp in fog counts as if it had been.
+  std::vector<double> excess;
+
+  std::size_t count() const { return excess.size(); }
+  Estimate estimate(const std::vector<std::size_t>& tiles) const;
+  double mean_excess(const std::vector<std::size_t>& tiles) const;
+};
+
+/// One sample a pixel and round. Only bdpt can tell the `excess`.
+Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_excess, int replicates,
+                   int rounds, std::uint64_t seed);
+/// By independent renders of pssmlt.
+Tiles render_tiles_by_chains(const Scene& scene, int max_depth, int replicates,
+                             double mutations_per_pixel, std::uint64_t seed);
+
+/// The reference of scenes/NAME where `scene`'s crop window lies, and its standard errors.
+struct Reference {
+  Image mean, error;
+  Estimate estimate(const std::vector<std::size_t>& tiles, const Tiles& like) const;
+};
+Reference read_reference(const std::string& name, const Scene& scene);
+
+}  // namespace fogbow::testing

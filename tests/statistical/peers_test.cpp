@@ -1,0 +1,160 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// scenes/ against their references by Mitsuba 3, tile by tile (validation 8 of the design). In the
+// fast suite a few tiles of three scenes; in the long one all nine scenes, and pssmlt beside bdpt.
+#include <gtest/gtest.h>
+
+#include <cstdio>
+#include <cstdlib>
+
+#include "core/estimators/sampling.h"
+#include "core/scene_io/load.h"
+#include "media/registry.h"
+#include "tests/statistical/peers_rendering.h"
+
+namespace fogbow {
+namespace {
+
+using namespace testing;
+
+constexpr int kMaxDepth = 64;  // as the references
+constexpr int kReplicates = 32;
+constexpr int kTests = 9 * 4 * 258;
+const double kLevel = sidak(kSuiteFalseAlarm, kTests);
+constexpr double kPower = 0.99;
+
+bool is_long() { return std::getenv("FOGBOW_LONG") != nullptr; }
+
+struct Peer {
+  std::string name;
+  std::array<int, 4> crop;  ///< of the fast suite; width 0: only in the long one
+  int fast_rounds, long_rounds;
+  bool path_converges;  ///< next-event estimation reaches nearly all of the light
+};
+
+const std::vector<Peer>& peers() {
+  static const std::vector<Peer> all = {{"cornell-fog", {32, 144, 64, 32}, 16, 32, true},
+                                        {"cornell-fog-g07", {0, 0, 0, 0}, 0, 32, true},
+                                        {"glass-sphere-fog", {16, 224, 64, 32}, 16, 64, false},
+                                        {"ring-caustic", {0, 0, 0, 0}, 0, 32, false},
+                                        {"ring-caustic-rough", {32, 208, 64, 32}, 16, 32, true},
+                                        {"pool", {0, 0, 0, 0}, 0, 256, false},
+                                        {"bulb", {0, 0, 0, 0}, 0, 256, false},
+                                        {"door-ajar", {0, 0, 0, 0}, 0, 64, false},
+                                        {"door-ajar-fog", {0, 0, 0, 0}, 0, 64, false}};
+  return all;
+}
+
+/// Effective number of pixels that a tile's variance in the reference comes from. Where it is
+/// small, a few rare hits are all that is known of the error: there the reference's own error
+/// cannot be believed.
+double contributing_pixels(const Reference& reference, const Tiles& like, std::size_t tile) {
+  const int x0 = static_cast<int>(tile) % like.across * kTile;
+  const int y0 = static_cast<int>(tile) / like.across * kTile;
+  double squares = 0, fourths = 0;
+  for (int y = y0; y < y0 + kTile; ++y)
+    for (int x = x0; x < x0 + kTile; ++x) {
+      const Image& e = reference.error;
+      const double variance = sqr(luminance(RGB(e.at(x, y, 0), e.at(x, y, 1), e.at(x, y, 2))));
+      squares += variance;
+      fourths += sqr(variance);
+    }
+  return fourths > 0 ? squares * squares / fourths : kTile * kTile;
+}
+
+std::vector<std::size_t> believable_tiles(const Reference& reference, const Tiles& like) {
+  constexpr double kLeastPixels = 32;
+  std::vector<std::size_t> tiles;
+  for (std::size_t i = 0; i < like.count(); ++i)
+    if (contributing_pixels(reference, like, i) >= kLeastPixels) tiles.push_back(i);
+  return tiles;
+}
+
+std::vector<std::size_t> all_tiles(const Tiles& like) {
+  std::vector<std::size_t> tiles(like.count());
+  for (std::size_t i = 0; i < tiles.size(); ++i) tiles[i] = i;
+  return tiles;
+}
+
+/// `theirs` may exceed the truth by anything from nothing to `excess`.
+double p_value(Estimate ours, const Estimate& theirs, double excess) {
+  ours.mean += std::clamp(theirs.mean - ours.mean, 0.0, excess);
+  return welch(ours, theirs);
+}
+
+/// Each tile, and all of them together with the power against a bias of `bias`.
+template <class Theirs>
+void expect_equal(const std::string& name, const Tiles& ours, const Theirs& theirs,
+                  const std::vector<std::size_t>& tiles, const Tiles& excess, double bias) {
+  ASSERT_FALSE(tiles.empty()) << name;
+  double least = 1;
+  const auto expect = [&](const std::string& what, const std::vector<std::size_t>& part) {
+    const Estimate a = ours.estimate(part), b = theirs(part);
+    const double p = p_value(a, b, excess.mean_excess(part));
+    EXPECT_GT(p, kLevel) << name << ", " << what << ": " << a.mean << " ± " << a.standard_error
+                         << " against " << b.mean << " ± " << b.standard_error << ", allowance "
+                         << excess.mean_excess(part);
+    least = std::min(least, p);
+  };
+  for (const std::size_t i : tiles) expect("tile " + std::to_string(i), {i});
+  expect("mean", tiles);
+  const Estimate a = ours.estimate(tiles), b = theirs(tiles);
+  // The allowance may hide its own size of a bias.
+  const double seen = bias * b.mean - excess.mean_excess(tiles);
+  EXPECT_GE(power(a, b, seen, kLevel), kPower)
+      << name << ": standard errors " << a.standard_error / b.mean << ", "
+      << b.standard_error / b.mean << " of the mean";
+  std::printf(
+      "%-32s %3zu tiles, least p %.2g; mean ratio %.5f ± %.5f, allowance %.5f; power %.4f "
+      "against %g%%\n",
+      name.c_str(), tiles.size(), least, a.mean / b.mean,
+      std::hypot(a.standard_error, b.standard_error) / b.mean, excess.mean_excess(tiles) / b.mean,
+      power(a, b, seen, kLevel), 100 * bias);
+}
+
+class Peers : public ::testing::TestWithParam<Peer> {};
+
+TEST_P(Peers, PicturesAgreeWithMitsuba) {
+  const Peer& peer = GetParam();
+  if (!is_long() && peer.crop[2] == 0) GTEST_SKIP() << "in the long suite";
+  LoadOptions options;
+  if (!is_long()) options.crop = peer.crop;
+  std::vector<std::string> warnings;
+  const Scene scene(
+      load_mitsuba_xml("scenes/" + peer.name + "/scene.xml", builtin_media(), options, warnings));
+  const EstimatorSettings settings{.max_depth = kMaxDepth};
+  const int rounds = is_long() ? peer.long_rounds : peer.fast_rounds;
+  const double bias = is_long() ? 0.01 : 0.03;
+
+  const auto bdpt = make_bdpt(scene, settings);
+  const Tiles ours = render_tiles(scene, *bdpt, true, kReplicates, rounds, suite_seed() + 70);
+  const Reference reference = read_reference(peer.name, scene);
+  const auto theirs = [&](const std::vector<std::size_t>& tiles) {
+    return reference.estimate(tiles, ours);
+  };
+  const auto tiles = believable_tiles(reference, ours);
+  expect_equal(peer.name + ": bdpt, Mitsuba", ours, theirs, tiles, ours, bias);
+  if (!is_long()) return;
+
+  if (peer.path_converges) {
+    const auto path = make_path_tracer(scene, settings);
+    const Tiles by_path = render_tiles(scene, *path, false, kReplicates, rounds, suite_seed() + 80);
+    expect_equal(peer.name + ": path, Mitsuba", by_path, theirs, tiles, ours, bias);
+  }
+  // Whatever the reference cannot tell, two of our own samplers must agree on.
+  const Tiles chains =
+      render_tiles_by_chains(scene, kMaxDepth, kReplicates / 2, rounds, suite_seed() + 90);
+  const Tiles none{ours.across, {}, std::vector<double>(ours.count())};
+  expect_equal(
+      peer.name + ": pssmlt, bdpt", chains,
+      [&](const std::vector<std::size_t>& part) { return ours.estimate(part); }, all_tiles(ours),
+      none, bias);
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, Peers, ::testing::ValuesIn(peers()), [](const auto& info) {
+  std::string name = info.param.name;
+  std::replace(name.begin(), name.end(), '-', '_');
+  return name;
+});
+
+}  // namespace
+}  // namespace fogbow
