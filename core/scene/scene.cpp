@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <array>
+#include <numbers>
 #include <set>
 
 #include "core/scene/boundary_report.h"
@@ -19,11 +20,14 @@ constexpr int kAnchorsPerShape = 8, kAnchorsTried = 8;
 constexpr double kGrazing = 1e-3;
 constexpr int kEscapeRays = 64;
 
-/// (i + ½)/n and van der Corput's sequence: spread over the unit square.
+/// Spread over the unit square: a shifted grid and van der Corput's sequence. The golden ratio
+/// keeps points off edges between faces of commensurable areas, where rays to them would meet
+/// either face.
 Vec2 spread_point(int i, int n) {
+  constexpr double kShift = 2 - std::numbers::phi;
   double y = 0, place = 0.5;
   for (int rest = i; rest > 0; rest /= 2, place /= 2) y += place * (rest % 2);
-  return {(i + 0.5) / n, y + 0.5 / n};
+  return {(i + kShift) / n, y + kShift / n};
 }
 
 Vec3 spread_direction(int i, int n) {

@@ -5,6 +5,7 @@
 
 #include "core/geometry/shapes.h"
 #include "core/math/random.h"
+#include "core/math/warp.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/emitters.h"
 #include "core/scene/sensors.h"
@@ -84,6 +85,17 @@ TEST(MediumAt, NestedBoundariesAnswersByRadius) {
 }
 
 /// A null cube that reaches through a wall of the room, and lies in fog on one side of it.
+TEST(MediumAt, FarFromABlockOfCommensurableFaces) {
+  const auto inside = fog("inside");
+  const auto block = make_cube(Transform::scale({20, 20, 6}));  // areas 480 : 480 : 1600
+  const Scene scene(seen_from({0, 0, -9}, {boundary(block, inside, nullptr, "block")}));
+  Rng rng(testing::suite_seed(), RngDomain::Test, 33, 0);
+  int wrong = 0;
+  for (int i = 0; i < 20000; ++i)
+    wrong += scene.medium_at(60.0 * warp::sample_sphere(uniform2(rng))) != nullptr;
+  EXPECT_EQ(wrong, 0);
+}
+
 TEST(MediumAt, BoundaryThroughAWall) {
   const auto smoke = fog("smoke");
   const Scene scene(seen_from(
