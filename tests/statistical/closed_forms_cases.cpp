@@ -142,7 +142,7 @@ void add_enclosures(std::vector<ClosedForm>& forms) {
                    {{"camera", "0.3, -0.4, -0.1"}, {"medium", "milk"}},
                    everywhere(kInGlass),
                    true,
-                   {{"path", 10}, {"bdpt", 14}, {"pssmlt", 140}},
+                   {{"path", 40}, {"bdpt", 14}, {"pssmlt", 140}},
                    kSpecularFirst});
 }
 

@@ -185,8 +185,10 @@ std::array<std::vector<double>, kRegions> measure(const Comparison& comparison, 
   const int n = comparison.sampler.integrator == "pssmlt" ? kReplicatesOfChains : kReplicates;
   std::array<std::vector<double>, kRegions> values;
   for (int r = 0; r < n; ++r) {
-    const auto stream = static_cast<std::uint64_t>(comparison.index) * kReplicates + r;
-    const auto relative = regions.relative(replicates.picture(suite_seed() + stream, samples / n));
+    const auto stream = static_cast<std::uint64_t>(comparison.index) * kReplicates + r + 1;
+    constexpr std::uint64_t kGolden = 0x9E3779B97F4A7C15;  // no overlap between nearby suite seeds
+    const auto relative =
+        regions.relative(replicates.picture(suite_seed() + kGolden * stream, samples / n));
     for (int i = 0; i < kRegions; ++i) values[i].push_back(relative[i]);
   }
   return values;
