@@ -128,14 +128,18 @@ Sampling sample(const Scene& scene, const Estimator& estimator, bool classified,
 
 Sampling render_chains(const Scene& scene, int longest, int replicates, std::uint64_t mutations,
                        std::uint64_t seed) {
+  // A short bootstrap's starts are biased as 1/samples, more than the errors here allow where the
+  // light is in few paths.
+  constexpr std::uint64_t kBootstrap = 1 << 15;
   Replicates all(replicates, longest);
   const auto [width, height] = rendered_size(scene.film());
   const double pixels = static_cast<double>(width) * height;
   RenderOptions options;
   options.integrator = "pssmlt";
-  options.overrides = {{"max_depth", std::to_string(longest - 1)},
-                       {"chains", "8"},
-                       {"luminance_samples", std::to_string(mutations / 4)}};
+  options.overrides = {
+      {"max_depth", std::to_string(longest - 1)},
+      {"chains", "8"},
+      {"luminance_samples", std::to_string(std::max<std::uint64_t>(kBootstrap, mutations))}};
   options.samples_per_pixel = static_cast<double>(mutations) / pixels;
   for (int r = 0; r < replicates; ++r) {
     options.seed = seed + static_cast<std::uint64_t>(r) * 0x9E3779B97F4A7C15;
