@@ -33,6 +33,9 @@ NO_LIGHT = """<emitter type="point"><point name="position" x="0" y="0.5" z="0"/>
 <emitter type="constant"><rgb name="radiance" value="0"/></emitter>
 <shape type="sphere"><point name="center" x="0.1" y="-0.1" z="-2.5"/><float name="radius" value="0.1"/>
   <emitter type="area"><rgb name="radiance" value="0"/></emitter></shape>"""
+TWO_LIGHTS = """<emitter type="point"><point name="position" x="0.5" y="1" z="0.5"/><rgb name="intensity" value="1, 0.5, 2"/>
+</emitter><shape type="sphere"><point name="center" x="0.9" y="-0.75" z="0.75"/><float name="radius" value="0.1875"/>
+  <ref id="black"/><emitter type="area"><rgb name="radiance" value="2, 4, 1"/></emitter></shape>"""
 ANOTHER_BLACK = """<shape type="sphere"><point name="center" x="0.1" y="-0.1" z="-2.5"/><float name="radius" value="0.1"/>
   <ref id="black"/></shape>"""
 EMPTY_CUBE = """<shape type="cube"><transform name="to_world"><scale value="0.45"/><translate x="-0.5" y="-0.45" z="0.25"/>
@@ -93,6 +96,8 @@ def add_similarities(manifest, base):
 def add_neutral_changes(manifest, base):
     """What a scene may gain or be rewritten as without being seen."""
     box, fog, sky = base["fog_box"], base["camera_in_fog"], base["sky_and_lens"]
+    three = with_objects(box, TWO_LIGHTS)
+    manifest.compare("lights in another order", three, shuffled(three), replicates=REPLICATES)
     manifest.compare("lights without light", with_objects(box, ANOTHER_BLACK), with_objects(box, NO_LIGHT))
     black_mirror = text_of(box).replace(
         '<bsdf type="diffuse">\n      <rgb name="reflectance" value="0" />\n    </bsdf>',
@@ -130,12 +135,13 @@ def add_extremes_of_depth_and_film(manifest, base):
                    ("path", "bdpt", "pssmlt"), 4)
     manifest.agree("field of view of 0.01 degrees", with_value(glow, fov, 0.01), ("path", "bdpt", "pssmlt"))
     for integrator in INTEGRATORS:
-        more = {"light": 2, "pssmlt": 10}.get(integrator, 1)  # a pixel is left to few chains
+        # Chains are slower where they see but a part of the picture.
+        more, most = {"light": (2, 2), "pssmlt": (4, 12)}.get(integrator, (1, 1))
         window, pixel = [5, 6, 9, 7], [1, 2, 1, 1]
-        whole, few = manifest.side(glow, integrator, more), manifest.side(glow, integrator, 32 * more, size=[3, 3])
+        whole, few = manifest.side(glow, integrator, more), manifest.side(glow, integrator, 32 * most, size=[3, 3])
         one = manifest.side(glow, integrator, 256, size=[1, 1])
         part = manifest.side(glow, integrator, 4 * more, crop=window)
-        point = manifest.side(glow, integrator, 256 * more, size=[3, 3], crop=pixel)
+        point = manifest.side(glow, integrator, 256 * most, size=[3, 3], crop=pixel)
         manifest.add(f"one pixel for all, {integrator}", whole, one)
         manifest.add(f"crop, {integrator}", whole, part, window=window)
         manifest.add(f"crop of one pixel, {integrator}", few, point, window=pixel)
