@@ -158,7 +158,7 @@ Sampling render_chains(const Scene& scene, int longest, int replicates, std::uin
 
 Sampling sample_until(const Sampler& sampler, std::uint64_t pilot_samples, Precision precision,
                       double level, std::uint64_t seed) {
-  constexpr double kSafety = 2;  // the pilot's own errors are uncertain
+  constexpr double kSafety = 3;  // the pilot's own errors are uncertain
   const Sampling pilot = sampler(pilot_samples, seed);
   double most = 1;
   for (const Replicates& r : pilot) {

@@ -32,7 +32,7 @@ Precision precision(const std::string& scene) {
   if (scene == "water") return {0.25, 1};
   if (scene == "fog-in-glass" || scene == "two-kinds-of-glass") return {0.2, 0.8};
   if (scene == "glass-sphere-fog") return {0.15, 1};
-  return {0.1, 0.5};
+  return {0.12, 0.6};
 }
 
 std::string test_name(const ::testing::TestParamInfo<TestScene>& info) {
