@@ -12,8 +12,8 @@ std::shared_ptr<const PhaseFunction> make_isotropic_phase();
 /// Henyey and Greenstein 1941; g in (−1, 1).
 std::shared_ptr<const PhaseFunction> make_henyey_greenstein(double g);
 
-/// Chromatic; albedo = σ_s/σ_t in [0, 1]; `emission` is radiance per unit length and needs σ_t > 0 in some channel.
-/// Throws std::domain_error on negative or non-finite coefficients.
+/// Chromatic; albedo = σ_s/σ_t in [0, 1]; `emission` is radiance per unit length and needs σ_t > 0
+/// in some channel. Throws std::domain_error on negative or non-finite coefficients.
 std::shared_ptr<const Medium> make_homogeneous_medium(const RGB& sigma_t, const RGB& albedo,
                                                       std::shared_ptr<const PhaseFunction> phase,
                                                       const RGB& emission = RGB(0),

@@ -11,6 +11,7 @@ namespace fogbow {
 /// Integrator properties after the scene's and the overrides have been read.
 struct RenderSettings {
   std::string integrator;  ///< path, light, bdpt or pssmlt
+  bool uses_chains() const { return integrator == "pssmlt"; }
   int max_depth = 0;
   bool depth_capped = false;  ///< the scene sets no limit, and ours stands in for it
   int rr_depth = 5;

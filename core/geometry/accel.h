@@ -24,8 +24,9 @@ struct Hit {
   Vec2 local;
 };
 
-/// Ray queries over shapes; the index of a shape in the list given is its id. Thread-safe once built.
-/// Every candidate near either end of the ray is decided in double precision, so that a ray neither meets the primitive it leaves nor the one it goes to.
+/// Ray queries over shapes; the index of a shape in the list given is its id. Thread-safe once
+/// built. Every candidate near either end of the ray is decided in double precision, so that a ray
+/// neither meets the primitive it leaves nor the one it goes to.
 class Accel {
  public:
   /// The shapes must outlive the accelerator.
@@ -34,9 +35,11 @@ class Accel {
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;
 
-  /// Nearest hit in (ray.t_min, ray.t_max) that is not the point of `from` the ray starts on. A non-finite ray is a broken law (CHECK).
+  /// Nearest hit in (ray.t_min, ray.t_max) that is not the point of `from` the ray starts on. A
+  /// non-finite ray is a broken law (CHECK).
   std::optional<Hit> intersect(const Ray& ray, PrimitiveId from = kNoPrimitive) const;
-  /// True iff anything lies strictly between the two ends; `from` and `to` name the primitives of the end points.
+  /// True iff anything lies strictly between the two ends; `from` and `to` name the primitives of
+  /// the end points.
   bool occluded(const Vec3& a, const Vec3& b, PrimitiveId from = kNoPrimitive,
                 PrimitiveId to = kNoPrimitive) const;
 

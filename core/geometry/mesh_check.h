@@ -20,7 +20,8 @@ struct BoundaryDefect {
 /// The union of shapes that separate one interior from one exterior medium.
 class BoundaryGroup {
  public:
-  /// Welds coincident vertices of the group's tessellations and checks closedness, orientation and self-intersection.
+  /// Welds coincident vertices of the group's tessellations and checks closedness, orientation and
+  /// self-intersection.
   explicit BoundaryGroup(std::span<const Shape* const> shapes);
   ~BoundaryGroup();
   BoundaryGroup(BoundaryGroup&&) noexcept;

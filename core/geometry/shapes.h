@@ -16,12 +16,15 @@ struct TriangleMeshData {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
-/// Smooth where normals are given. Degenerate triangles are dropped and counted in a warning. Throws std::domain_error on indices out of range or non-finite data.
+/// Smooth where normals are given. Degenerate triangles are dropped and counted in a warning.
+/// Throws std::domain_error on indices out of range or non-finite data.
 std::shared_ptr<const Shape> make_mesh(TriangleMeshData data);
-/// Normals weighted by the angles at each vertex, for meshes that are to look smooth and bring none.
+/// Normals weighted by the angles at each vertex, for meshes that are to look smooth and bring
+/// none.
 std::vector<Vec3> vertex_normals(const TriangleMeshData& data);
 /// `flip_normals` turns the inside out.
-std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius, bool flip_normals = false);
+std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius,
+                                         bool flip_normals = false);
 /// The image of [−1,1]² × {0} with normal +z; exact.
 std::shared_ptr<const Shape> make_rectangle(const Transform& to_world, bool flip_normals = false);
 /// The image of [−1,1]³, normals outwards; exact.

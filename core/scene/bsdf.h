@@ -13,10 +13,12 @@ struct BsdfSample {
   double pdf_sigma;  ///< what pdf_sigma or pdf_dirac answers for it
 };
 
-/// Scattering at a surface. Directions are unit vectors in the local shading frame (n = +z, exterior side), both pointing away from the surface;
-/// `w_light` goes towards the light, `w_eye` towards the eye, `from`/`to` name them where a formula does not care which is which.
-/// Values are those of radiance: f_s(w_light → w_eye) carries the (n_eye/n_light)² of refraction whatever the direction of sampling.
-/// Sampling does not depend on the direction of transport. The correction for shading normals is not the BSDF's (see measurement.h).
+/// Scattering at a surface. Directions are unit vectors in the local shading frame (n = +z,
+/// exterior side), both pointing away from the surface; `w_light` goes towards the light, `w_eye`
+/// towards the eye, `from`/`to` name them where a formula does not care which is which. Values are
+/// those of radiance: f_s(w_light → w_eye) carries the (n_eye/n_light)² of refraction whatever the
+/// direction of sampling. Sampling does not depend on the direction of transport. The correction
+/// for shading normals is not the BSDF's (see measurement.h).
 class Bsdf {
  public:
   virtual ~Bsdf() = default;
@@ -29,12 +31,15 @@ class Bsdf {
 
   /// The part that is a function, 1/sr, without cosine.
   virtual RGB f_s(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const = 0;
-  /// Density of `to` by sample() given `from` in solid angle, the choice of lobe included; the Dirac part is left out.
+  /// Density of `to` by sample() given `from` in solid angle, the choice of lobe included; the
+  /// Dirac part is left out.
   virtual double pdf_sigma(const SurfacePoint& x, const Vec3& from, const Vec3& to) const = 0;
 
-  /// The Dirac part, with the deltas cancelled: f_s = C n_eye² δ and pdf = P n_to² |cosθ_to| δ with one and the same δ, where C is F or 1 − F times the tint,
-  /// P the probability of the event, and n the index of refraction on the side of the direction (relative: exterior 1, interior η).
-  /// Ratios of paths with the same degenerate vertices, hence MIS weights and f/p, are then exact. `w_light`, `w_eye` are assumed to be related by reflection (same side) or refraction.
+  /// The Dirac part, with the deltas cancelled: f_s = C n_eye² δ and pdf = P n_to² |cosθ_to| δ with
+  /// one and the same δ, where C is F or 1 − F times the tint, P the probability of the event, and
+  /// n the index of refraction on the side of the direction (relative: exterior 1, interior η).
+  /// Ratios of paths with the same degenerate vertices, hence MIS weights and f/p, are then exact.
+  /// `w_light`, `w_eye` are assumed to be related by reflection (same side) or refraction.
   virtual RGB f_dirac(const SurfacePoint&, const Vec3& /*w_light*/, const Vec3& /*w_eye*/) const {
     return RGB(0);
   }
@@ -42,11 +47,13 @@ class Bsdf {
     return 0;
   }
 
-  /// u.x chooses lobe or event, u.y and u.z the direction; nothing where no direction comes out (absorbed).
+  /// u.x chooses lobe or event, u.y and u.z the direction; nothing where no direction comes out
+  /// (absorbed).
   virtual std::optional<BsdfSample> sample(const SurfacePoint& x, const Vec3& from,
                                            const Vec3& u) const = 0;
-  /// Some u with sample(from, u) = to, of the Dirac or of the smooth part, drawn by the uniform auxiliaries from its exact conditional law given (from, to);
-  /// nothing where the density is zero.
+  /// Some u with sample(from, u) = to, of the Dirac or of the smooth part, drawn by the uniform
+  /// auxiliaries from its exact conditional law given (from, to); nothing where the density is
+  /// zero.
   virtual std::optional<Vec3> invert(const SurfacePoint& x, const Vec3& from, const Vec3& to,
                                      bool dirac, const Vec3& auxiliary) const = 0;
 

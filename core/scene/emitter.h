@@ -13,20 +13,23 @@ namespace fogbow {
 enum class EmitterKind {
   Area,      ///< on a shape; positions have density pdf_A
   Point,     ///< a Dirac position: density 1, D = 1
-  Infinite,  ///< directions towards the light come first, with density in solid angle; then a position on a disk across them
+  Infinite,  ///< directions towards the light come first, with density in solid angle; then a
+             ///< position on a disk across them
   Volume,    ///< in an emitting medium; positions have density pdf_V, D = 1
 };
 
 /// Where a light path starts.
 struct EmitterPoint {
-  SurfacePoint surface;     ///< only `position` counts for Point and Volume; for Infinite `n_g` is the direction in which light travels
-  PrimitiveId id;           ///< of the surface, Area only
-  double pdf_position = 0;  ///< dA (Area), 1 (Point), dσ (Infinite), dV (Volume); the choice of the emitter is not included
+  SurfacePoint surface;  ///< only `position` counts for Point and Volume; for Infinite `n_g` is the
+                         ///< direction in which light travels
+  PrimitiveId id;        ///< of the surface, Area only
+  double pdf_position = 0;  ///< dA (Area), 1 (Point), dσ (Infinite), dV (Volume); the choice of the
+                            ///< emitter is not included
 };
 
 struct EmitterDirection {
-  Vec3 w;                    ///< world, away from the light (for Infinite: the travelling direction)
-  Vec3 origin;               ///< where the ray starts: the position, or for Infinite a point outside the scene
+  Vec3 w;       ///< world, away from the light (for Infinite: the travelling direction)
+  Vec3 origin;  ///< where the ray starts: the position, or for Infinite a point outside the scene
   double pdf_direction = 0;  ///< dσ; for Infinite dA across the ray
 };
 
@@ -37,22 +40,27 @@ class Emitter {
 
   /// Called once when the scene is built; Infinite needs the sphere around the scene.
   virtual void bind(const Vec3& /*scene_center*/, double /*scene_radius*/) {}
-  /// Called once when the scene is built, with the scene's number of the shape that an Area emitter lies on: `id.shape` of its points.
+  /// Called once when the scene is built, with the scene's number of the shape that an Area emitter
+  /// lies on: `id.shape` of its points.
   virtual void bind_shape(std::uint32_t /*shape*/) {}
-  /// Rough total power (any unit that all emitters of a scene share): weights of the choice between emitters.
+  /// Rough total power (any unit that all emitters of a scene share): weights of the choice between
+  /// emitters.
   virtual RGB power() const = 0;
 
   /// Nothing where the sample misses the support (Volume's bounding box).
   virtual std::optional<EmitterPoint> sample_position(const Vec3& u) const = 0;
   virtual double pdf_position(const EmitterPoint& x) const = 0;
-  virtual std::optional<Vec3> invert_position(const EmitterPoint& x, const Vec3& auxiliary) const = 0;
+  virtual std::optional<Vec3> invert_position(const EmitterPoint& x,
+                                              const Vec3& auxiliary) const = 0;
 
   virtual EmitterDirection sample_direction(const EmitterPoint& x, const Vec2& u) const = 0;
   /// `w` away from the light; for Infinite the density of the origin on the disk.
   virtual double pdf_direction(const EmitterPoint& x, const Vec3& w) const = 0;
-  virtual std::optional<Vec2> invert_direction(const EmitterPoint& x, const EmitterDirection& d) const = 0;
+  virtual std::optional<Vec2> invert_direction(const EmitterPoint& x,
+                                               const EmitterDirection& d) const = 0;
 
-  /// Radiance (Area, Infinite), intensity (Point), or radiance per unit length (Volume), leaving x along w.
+  /// Radiance (Area, Infinite), intensity (Point), or radiance per unit length (Volume), leaving x
+  /// along w.
   virtual RGB L_e(const EmitterPoint& x, const Vec3& w) const = 0;
 };
 

@@ -14,11 +14,14 @@ namespace fogbow {
 std::shared_ptr<Emitter> make_area_emitter(std::shared_ptr<const Shape> shape, const RGB& radiance);
 /// Isotropic, intensity in W/sr.
 std::shared_ptr<Emitter> make_point_emitter(const Vec3& position, const RGB& intensity);
-/// The same radiance from everywhere beyond the scene. invert_direction takes any point of the ray as its origin.
+/// The same radiance from everywhere beyond the scene. invert_direction takes any point of the ray
+/// as its origin.
 std::shared_ptr<Emitter> make_constant_emitter(const RGB& radiance);
-/// Emission of a medium: positions uniform in `bounds`, nothing where `medium_at` says another medium; directions isotropic.
-/// Only points of the medium may be asked about; its pdf_position is 0 outside `bounds`.
-std::shared_ptr<Emitter> make_volume_emitter(std::shared_ptr<const Medium> medium, const Bounds& bounds,
+/// Emission of a medium: positions uniform in `bounds`, nothing where `medium_at` says another
+/// medium; directions isotropic. Only points of the medium may be asked about; its pdf_position is
+/// 0 outside `bounds`.
+std::shared_ptr<Emitter> make_volume_emitter(std::shared_ptr<const Medium> medium,
+                                             const Bounds& bounds,
                                              std::function<const Medium*(const Vec3&)> medium_at);
 
 }  // namespace fogbow

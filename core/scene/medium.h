@@ -26,7 +26,8 @@ class Medium {
 
   /// ∫σ_t dt over [t0, t1] of the ray, exactly; t1 may be infinite.
   virtual RGB optical_depth(const Ray& ray, double t0, double t1) const = 0;
-  /// The t in (t0, t1) where the optical depth from t0 in one channel equals `target` ≥ 0; nothing if t1 comes first.
+  /// The t in (t0, t1) where the optical depth from t0 in one channel equals `target` ≥ 0; nothing
+  /// if t1 comes first.
   virtual std::optional<double> distance(const Ray& ray, double t0, double t1, int channel,
                                          double target) const = 0;
 

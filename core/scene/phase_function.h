@@ -4,8 +4,8 @@
 
 namespace fogbow {
 
-/// Scattering in a medium. Directions are unit vectors in world space, both pointing away from the vertex:
-/// the cosine of the scattering angle is −dot(from, to). Reciprocal.
+/// Scattering in a medium. Directions are unit vectors in world space, both pointing away from the
+/// vertex: the cosine of the scattering angle is −dot(from, to). Reciprocal.
 class PhaseFunction {
  public:
   virtual ~PhaseFunction() = default;

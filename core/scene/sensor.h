@@ -11,8 +11,9 @@ struct SensorRay {
   double pdf_sigma;  ///< of the direction, given the position
 };
 
-/// A camera. Raster positions are in [0,1)², u to the right, v down. The importance W_e integrates to one over the whole film
-/// (∫ W_e D dσ dA = 1), so that ∫ f dμ is the mean radiance of the picture.
+/// A camera. Raster positions are in [0,1)², u to the right, v down. The importance W_e integrates
+/// to one over the whole film (∫ W_e D dσ dA = 1), so that ∫ f dμ is the mean radiance of the
+/// picture.
 class Sensor {
  public:
   virtual ~Sensor() = default;
@@ -24,16 +25,19 @@ class Sensor {
   /// The u with sample_position(u) = position; `auxiliary` for pinholes, where any u will do.
   virtual Vec2 invert_position(const Vec3& position, const Vec2& auxiliary) const = 0;
 
-  /// D at the sensor for a direction away from it: 1 for pinholes, |cos| to the optical axis for lenses.
+  /// D at the sensor for a direction away from it: 1 for pinholes, |cos| to the optical axis for
+  /// lenses.
   virtual double D(const Vec3& w) const = 0;
   virtual SensorRay sample_direction(const Vec3& position, const Vec2& raster) const = 0;
   virtual double pdf_sigma(const Vec3& position, const Vec3& w) const = 0;
-  /// Where the film sees direction w from `position`; nothing off the film. The inverse of sample_direction.
+  /// Where the film sees direction w from `position`; nothing off the film. The inverse of
+  /// sample_direction.
   virtual std::optional<Vec2> raster(const Vec3& position, const Vec3& w) const = 0;
   /// Without the pixel filter; 0 off the film.
   virtual double W_e(const Vec3& position, const Vec3& w) const = 0;
 
-  /// Nothing is seen nearer than near_distance(w) along w (nor attenuates there), nor beyond far_distance(w).
+  /// Nothing is seen nearer than near_distance(w) along w (nor attenuates there), nor beyond
+  /// far_distance(w).
   virtual double near_distance(const Vec3& w) const = 0;
   virtual double far_distance(const Vec3& w) const = 0;
   /// World from camera, for metadata.

@@ -11,9 +11,10 @@ struct PerspectiveSettings {
   Transform to_world;            ///< camera looks along +z, +x is to the left of the picture
   double fov_x_degrees = 38.18;  ///< horizontal, of the whole picture
   int width = 768, height = 576;
-  int crop_x = 0, crop_y = 0, crop_width = 0, crop_height = 0;  ///< raster covers the crop alone; width 0: all
-  double near_clip = 0.01, far_clip = 1e4;                      ///< distances along the axis
-  Vec2 principal_point_offset{0, 0};                            ///< in fractions of the film
+  int crop_x = 0, crop_y = 0, crop_width = 0,
+      crop_height = 0;                      ///< raster covers the crop alone; width 0: all
+  double near_clip = 0.01, far_clip = 1e4;  ///< distances along the axis
+  Vec2 principal_point_offset{0, 0};        ///< in fractions of the film
 };
 
 std::shared_ptr<const Sensor> make_perspective_sensor(const PerspectiveSettings& settings);

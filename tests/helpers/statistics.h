@@ -19,7 +19,8 @@ double p_value_student(double t, double degrees_of_freedom);
 /// P(χ²_dof ≥ x).
 double p_value_chi2(double x, double degrees_of_freedom);
 
-/// Pearson's χ² of counts against expected counts; cells expected below 5 are pooled. Returns the p-value.
+/// Pearson's χ² of counts against expected counts; cells expected below 5 are pooled. Returns the
+/// p-value.
 double chi2_test(std::span<const std::uint64_t> observed, std::span<const double> expected);
 /// Kolmogorov–Smirnov p-value of samples against the uniform law on [0, 1].
 double uniform_ks_test(std::vector<double> samples);
@@ -35,10 +36,12 @@ Estimate estimate(std::span<const double> replicates);
 double welch(const Estimate& a, const Estimate& b);
 /// Of an estimate against a known value; p-value.
 double compare(const Estimate& a, double value);
-/// Probability that a two-sided test at `level` detects a true difference of `bias`, given both standard errors and Welch's degrees of freedom.
+/// Probability that a two-sided test at `level` detects a true difference of `bias`, given both
+/// standard errors and Welch's degrees of freedom.
 double power(const Estimate& a, const Estimate& b, double bias, double level);
 
-/// The seed of a suite: fixed, or from FOGBOW_FRESH_SEED in the environment (a number; anything else draws one). Printed when first asked for.
+/// The seed of a suite: fixed, or from FOGBOW_FRESH_SEED in the environment (a number; anything
+/// else draws one). Printed when first asked for.
 std::uint64_t suite_seed();
 
 }  // namespace fogbow::testing

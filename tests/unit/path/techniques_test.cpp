@@ -78,7 +78,7 @@ TEST_P(Techniques, ReducedContributionFollowsFromTheTracedDensity) {
   int compared = 0;
   for_each_connection(6000, 7, [&](const Path& path, int s, const Connection& c) {
     if (path[0].infinite() && s == 0) return;  // the last edge has no length to reduce
-    double chain_factor = 1;  // p_s over its counterpart without deltas
+    double chain_factor = 1;                   // p_s over its counterpart without deltas
     const auto chain = [&](int a, int step) {
       int b = a + step;
       double formal = 1, events = 1;
