@@ -1,0 +1,48 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/render.h"
+
+#include <gtest/gtest.h>
+
+#include "core/geometry/shapes.h"
+#include "core/scene/emitters.h"
+#include "media/media.h"
+#include "tests/helpers/test_scenes.h"
+
+namespace fogbow {
+namespace {
+
+RenderOptions options_of(const std::string& integrator, std::uint64_t seed) {
+  RenderOptions options;
+  options.integrator = integrator;
+  options.samples_per_pixel = 32;
+  options.threads = 1;
+  options.seed = seed;
+  options.overrides = {{"chains", "2"}, {"luminance_samples", "4096"}};
+  return options;
+}
+
+/// The lamp stands in fog so thick that the first samples carry next to nothing, and a later one
+/// that comes out near the surface ordinary light.
+TEST(Render, FilmHoldsLightThatTheFirstSamplesDidNotSee) {
+  SceneDescription description = testing::make_test_scene("flame");
+  Surface& cloud = description.surfaces.back();
+  cloud.shape = make_cube(Transform::scale(Vec3(1.6)));
+  cloud.interior = make_homogeneous_medium(RGB(100, 120, 140), RGB(0.99), make_isotropic_phase());
+  const Scene scene(std::move(description));
+  for (std::uint64_t seed = 0; seed < 12; ++seed)
+    EXPECT_NO_THROW(render(scene, options_of("light", seed))) << seed;
+}
+
+TEST(Render, PointLightsAreNotSeenByPinholes) {
+  SceneDescription description = testing::make_test_scene("mirror-fog");
+  description.emitters = {make_point_emitter(Vec3(0, 0.2, 0.5), RGB(5))};
+  const Scene scene(std::move(description));
+  for (const char* integrator : {"path", "light", "bdpt", "pssmlt"}) {
+    const RenderResult result = render(scene, options_of(integrator, 1));
+    ASSERT_FALSE(result.lengths.empty());
+    EXPECT_EQ(result.lengths.front().k, 3) << integrator;
+  }
+}
+
+}  // namespace
+}  // namespace fogbow
