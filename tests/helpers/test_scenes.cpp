@@ -93,7 +93,8 @@ std::shared_ptr<const Shape> sphere(const Vec3& center, double radius) {
   return make_sphere(center, radius);
 }
 
-/// A wavy height field with smooth normals over [−1.5, 1.5]², facing up.
+/// A wavy height field with smooth normals over [−1.5, 1.5]², facing up; the walls of a basin begin
+/// at 1.4.
 std::shared_ptr<const Shape> water_surface() {
   constexpr int n = 40;
   TriangleMeshData mesh;
@@ -169,11 +170,11 @@ SceneDescription water() {
   Builder b;
   b.camera(Vec3(0, 2, 2.2), Vec3(0, -0.3, 0), 45);
   b.floor(gray()).ceiling_light(0.3, RGB(20));
-  // A basin: no way leads around the edge of the open water surface.
+  // A basin with thick walls, in which the open water surface ends: no way leads around its edge.
   for (int side = 0; side < 4; ++side)
-    b.add(make_rectangle(Transform::rotate(Vec3(0, 1, 0), 90.0 * side) *
-                         Transform::translate(Vec3(0, -0.4, -1.4)) *
-                         Transform::scale(Vec3(1.4, 0.7, 1))),
+    b.add(make_cube(Transform::rotate(Vec3(0, 1, 0), 90.0 * side) *
+                    Transform::translate(Vec3(0, -0.4, -1.5)) *
+                    Transform::scale(Vec3(1.6, 0.7, 0.1))),
           gray());
   b.bounds(water_surface(), make_dielectric(1.33), fog(RGB(0.9, 0.6, 0.5), RGB(0.4, 0.7, 0.8)),
            nullptr);

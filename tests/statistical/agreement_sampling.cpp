@@ -40,8 +40,6 @@ double growth(const Estimate& e, double bias, double level) {
 Reach reach(const Scene& scene, const Path& path) {
   const int k = static_cast<int>(path.size());
   const auto connects = [&](int s) { return !path[s - 1].degenerate && !path[s].degenerate; };
-  // A point of light seen directly is a Dirac pixel without variance, beyond any test of means.
-  if (k == 2 && path[0].kind == VertexKind::PointLight) return {};
   Reach r;
   r.path = hittable(scene, path[0]) || (k > 2 && connects(1));
   r.light = connects(k - 1) && !near_lens(scene, path);

@@ -183,13 +183,6 @@ void add_point_lights(std::vector<ClosedForm>& forms) {
                    false,
                    {{"light", 80}, {"bdpt", 18}, {"pssmlt", 140}},
                    no_caustic});
-  forms.push_back({"point light in the picture",
-                   name,
-                   {{"max_depth", "2"}},
-                   point_light_pixels,
-                   false,
-                   {{"light", 5}, {"bdpt", 5}, {"pssmlt", 140}},
-                   "path: meets no point light by chance"});
   forms.push_back({"shadow of a ball",
                    "ball-caustic",
                    {{"max_depth", "2"}, {"res", "8"}},
@@ -202,7 +195,7 @@ void add_point_lights(std::vector<ClosedForm>& forms) {
                    {{"res", "8"}},
                    of(ball_caustic_pixels, true),
                    false,
-                   {{"light", 600}, {"bdpt", 420}, {"pssmlt", 900}},
+                   {{"light", 600}, {"bdpt", 600}, {"pssmlt", 900}},
                    no_caustic});
 }
 

@@ -47,13 +47,6 @@ struct MirrorRoom {
     };
     return pixel_means(grid, L, 3);
   }
-  Vec3 to_light() const { return view.to_camera(light - view.origin); }
-  std::size_t light_pixel() const {
-    const Vec2 raster = grid.raster(to_light());
-    return static_cast<std::size_t>(raster.y) * grid.width + static_cast<std::size_t>(raster.x);
-  }
-  /// What intensity 1 adds to its pixel.
-  double star() const { return grid.importance(to_light()) / dot(to_light(), to_light()); }
 };
 
 }  // namespace
@@ -127,19 +120,7 @@ ExpectedPixels fresnel_plate_pixels(int width, int height) {
 }
 
 ExpectedPixels plane_mirror_pixels(int width, int height, bool mirrored) {
-  const MirrorRoom room(width, height);
-  ExpectedPixels pixels = room.floor(mirrored);
-  pixels[room.light_pixel()].reset();
-  return pixels;
-}
-
-ExpectedPixels point_light_pixels(int width, int height) {
-  const MirrorRoom room(width, height);
-  const ExpectedPixels floor = room.floor(false);
-  ExpectedPixels pixels(floor.size());
-  const std::size_t pixel = room.light_pixel();
-  pixels[pixel] = *floor[pixel] + room.star() * RGB(1, 2, 3);
-  return pixels;
+  return MirrorRoom(width, height).floor(mirrored);
 }
 
 ExpectedPixels ball_caustic_pixels(int width, int height, bool caustic) {

@@ -32,11 +32,8 @@ enum class SlabSide { Lit, Dark };
 ExpectedPixels slab_pixels(int width, int height, double fov, SlabSide side);
 ExpectedPixels airlight_pixels(int width, int height, double near);
 ExpectedPixels fresnel_plate_pixels(int width, int height);
-/// Lit by the light, and with `mirrored` by its image as well; without the pixel in which the light
-/// stands.
+/// Lit by the light, and with `mirrored` by its image as well.
 ExpectedPixels plane_mirror_pixels(int width, int height, bool mirrored);
-/// That pixel alone, lit by the light.
-ExpectedPixels point_light_pixels(int width, int height);
 /// Of the light itself, and with `caustic` what the ball reflects and refracts once.
 ExpectedPixels ball_caustic_pixels(int width, int height, bool caustic);
 
