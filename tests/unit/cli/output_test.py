@@ -40,8 +40,10 @@ class Outputs(CliTest):
         self.assertEqual(report["non_finite"], 0)
         speed = report["speed"]
         self.assertEqual((speed["cpu_seconds"], speed["rays"]), (1.5, 123456))
-        for name, count in (("rays_per_second", 123456), ("samples_per_second", 4e10)):
-            self.assertAlmostEqual(speed[name] * speed["seconds"] / count, 1)
+        for name, seconds, count in (("rays_per_second", "seconds", 123456),
+                                     ("samples_per_second", "render_seconds", 4e10)):
+            self.assertAlmostEqual(speed[name] * speed[seconds] / count, 1)
+        self.assertLess(speed["render_seconds"], speed["seconds"])
         self.assertEqual([report["interrupted"], report["groups_disagree"], report["exit_code"]], [False, False, 0])
         self.assertEqual((report["notes"], report["warnings"]), (["the scene asks for volpath"], []))
         self.assertEqual(report["files"], {"exr": "run.exr", "png": "run.png", "json": "run.json"})
