@@ -109,7 +109,7 @@ bool PathTracer::scatter_on(const Arrival& at, SampleStream& eye, Flight& flight
   const double u_roulette = eye.next();
   // The local roulette of bidirectional subpaths is left out (v = 0); here the whole throughput
   // decides.
-  const auto sample = sample_direction(scene_, at.y, from, Side::Eye, u, 0.0);
+  const auto sample = sample_direction(scene_, at.y, from, Side::Eye, u, 0.0, false);
   if (!sample) return false;
   const Scattering& s = sample->scattering;
   flight.pdf_sigma = s.pdf_to_light / s.survival_to_light;
@@ -149,7 +149,7 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
       light.x.infinite() ? light.x.point.n_g : normalize(y.position() - light.x.position());
   const RGB radiance = L_e(scene_, light.x, w);
   if (is_black(radiance)) return std::nullopt;
-  const Scattering s = scatter(scene_, y, -w, w_eye, false);
+  const Scattering s = scatter(scene_, y, -w, w_eye, false, false);
   if (is_black(s.f_hat)) return std::nullopt;
   const auto edge = connect(scene_, light.x, y);
   if (!edge) return std::nullopt;

@@ -12,8 +12,8 @@ Scattering scatter_at_end(const Scene& scene, const Subpath& path, int n, const 
   const SubpathVertex& x = path[n - 1];
   if (n > 1) {
     const Vec3 back = -x.edge.w;
-    return side == Side::Light ? scatter(scene, x.x, back, w, false)
-                               : scatter(scene, x.x, w, back, false);
+    return side == Side::Light ? scatter(scene, x.x, back, w, false, false)
+                               : scatter(scene, x.x, w, back, false, path[n - 2].x.degenerate);
   }
   Scattering end;
   if (side == Side::Light) {
@@ -29,8 +29,8 @@ Scattering scatter_at_end(const Scene& scene, const Subpath& path, int n, const 
 /// vertices sampled from the other end.
 double sum_techniques(const Scene& scene, const Subpath& path, int n, double pdf_last,
                       double pdf_before, Side side) {
-  if (n == 1) return other_techniques(scene, path, 0, pdf_last, side);
-  const double before = other_techniques(scene, path, n - 2, pdf_before, side);
+  if (n == 1) return other_techniques(scene, path, 0, pdf_last, false, side);
+  const double before = other_techniques(scene, path, n - 2, pdf_before, false, side);
   const bool connects = !path[n - 2].x.degenerate;
   return pdf_last / path[n - 1].pdf * (connects + before);
 }

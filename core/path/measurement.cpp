@@ -35,7 +35,7 @@ double survival(const RGB& f, double cos_to, double pdf, double index_ratio_squa
 }
 
 Scattering scatter_surface(const Scene& scene, const Vertex& x, const Vec3& w_light,
-                           const Vec3& w_eye, bool degenerate) {
+                           const Vec3& w_eye, bool degenerate, bool behind_specular) {
   const SurfacePoint& p = x.point;
   const LocalDirections d = localize(p, w_light, w_eye);
   if (!d.consistent) return {};
@@ -47,21 +47,24 @@ Scattering scatter_surface(const Scene& scene, const Vertex& x, const Vec3& w_li
   const double to_eye =
       degenerate ? b.pdf_dirac(p, d.light, d.eye) : b.pdf_sigma(p, d.light, d.eye);
   const double ratio = sqr(index_at(b, d.light) / index_at(b, d.eye));
-  const double stay_to_light = survival(f, std::abs(d.light.z), to_light, ratio);
+  const double stay_to_light =
+      behind_specular ? 1.0 : survival(f, std::abs(d.light.z), to_light, ratio);
   const double stay_to_eye = survival(f, std::abs(d.eye.z), to_eye, 1.0);
   return {f * d.correction, to_light * stay_to_light, to_eye * stay_to_eye, stay_to_light,
           stay_to_eye};
 }
 
-Scattering scatter_medium(const Vertex& x, const Vec3& w_light, const Vec3& w_eye) {
+Scattering scatter_medium(const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
+                          bool behind_specular) {
   const PhaseFunction& phase = x.medium->phase();
   const RGB sigma_s = x.medium->sigma_s(x.position()), sigma_t = x.medium->sigma_t(x.position());
   const RGB f_p = phase.f_p(w_light, w_eye);
   double albedo = 0;
   for (int c = 0; c < 3; ++c)
     if (sigma_t[c] > 0) albedo = std::fmax(albedo, sigma_s[c] / sigma_t[c]);
-  return {sigma_s * f_p, albedo * phase.pdf_sigma(w_eye, w_light),
-          albedo * phase.pdf_sigma(w_light, w_eye), albedo, albedo};
+  const double stay_to_light = behind_specular && albedo > 0 ? 1.0 : albedo;
+  return {sigma_s * f_p, stay_to_light * phase.pdf_sigma(w_eye, w_light),
+          albedo * phase.pdf_sigma(w_light, w_eye), stay_to_light, albedo};
 }
 
 }  // namespace
@@ -83,10 +86,10 @@ double geometric_term(const Scene& scene, const Vertex& a, const Vertex& b, cons
 }
 
 Scattering scatter(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
-                   bool degenerate) {
-  if (x.on_surface()) return scatter_surface(scene, x, w_light, w_eye, degenerate);
+                   bool degenerate, bool behind_specular) {
+  if (x.on_surface()) return scatter_surface(scene, x, w_light, w_eye, degenerate, behind_specular);
   FOGBOW_CHECK(x.in_medium());
-  return scatter_medium(x, w_light, w_eye);
+  return scatter_medium(x, w_light, w_eye, behind_specular);
 }
 
 RGB f_hat(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
@@ -111,7 +114,7 @@ double W_e(const Scene& scene, const Vertex& x, const Vec3& w) {
 
 std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex& x,
                                                 const Vec3& from, Side side, const Vec3& u,
-                                                double v) {
+                                                double v, bool behind_specular) {
   DirectionSample s{Vec3(0), false, {}};
   if (x.in_medium()) {
     s.w = x.medium->phase().sample(from, Vec2(u.y, u.z));
@@ -122,7 +125,8 @@ std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex
     s.degenerate = local->dirac;
   }
   const bool eye = side == Side::Eye;
-  s.scattering = scatter(scene, x, eye ? s.w : from, eye ? from : s.w, s.degenerate);
+  s.scattering =
+      scatter(scene, x, eye ? s.w : from, eye ? from : s.w, s.degenerate, behind_specular);
   const double pdf = eye ? s.scattering.pdf_to_light : s.scattering.pdf_to_eye;
   const double stay = eye ? s.scattering.survival_to_light : s.scattering.survival_to_eye;
   if (!(pdf > 0) || v >= stay) return std::nullopt;

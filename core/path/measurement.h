@@ -34,8 +34,10 @@ struct Scattering {
   double pdf_to_eye = 0;                              ///< of w_eye given w_light, roulette included
   double survival_to_light = 0, survival_to_eye = 0;  ///< the roulette's part of them
 };
+/// `behind_specular`: the neighbour on the eye's side is degenerate. Only the eye's subpath can
+/// have gone on from x then, no connection could replace it, and its roulette spares it.
 Scattering scatter(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
-                   bool degenerate);
+                   bool degenerate, bool behind_specular);
 
 /// Which end a subpath starts from.
 enum class Side : std::uint8_t { Light, Eye };
@@ -50,7 +52,7 @@ struct DirectionSample {
 /// roulette's.
 std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex& x,
                                                 const Vec3& from, Side side, const Vec3& u,
-                                                double v);
+                                                double v, bool behind_specular);
 
 /// Index of refraction on the side of x to which w points, relative to the exterior; 1 off
 /// surfaces.

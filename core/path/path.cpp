@@ -19,7 +19,7 @@ RGB f_hat_at(const Scene& scene, const Path& path, int i) {
 
 Scattering scatter_at(const Scene& scene, const Path& path, int i) {
   return scatter(scene, path[i], direction(path, i, i - 1), direction(path, i, i + 1),
-                 path[i].degenerate);
+                 path[i].degenerate, path[i + 1].degenerate);
 }
 
 /// Density of path[i] sampled from the light, given path[0..i).

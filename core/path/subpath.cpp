@@ -33,7 +33,9 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
     const double u_roulette = u.next();
     const Vec2 u_distance = u.next2();
     SubpathVertex& x = path.back();
-    const auto sample = sample_direction(scene, x.x, -x.edge.w, side, u_direction, u_roulette);
+    const std::size_t before = path.size() - 2;
+    const auto sample = sample_direction(scene, x.x, -x.edge.w, side, u_direction, u_roulette,
+                                         eye && path[before].x.degenerate);
     if (!sample) return;
     const Scattering& s = sample->scattering;
     const double pdf_sigma = eye ? s.pdf_to_light : s.pdf_to_eye;
@@ -48,10 +50,11 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
     next.connects = connectible(scene, next.x);
 
     x.x.degenerate = sample->degenerate;
-    const std::size_t before = path.size() - 2;
     const double reverse =
         pdf_arrival(path[before].x, reversed(x.edge), eye ? s.pdf_to_eye : s.pdf_to_light);
-    path[before].other_techniques = other_techniques(scene, path, before, reverse, side);
+    path[before].other_techniques =
+        other_techniques(scene, path, before, reverse, sample->degenerate, side);
+    if (!eye && s.survival_to_light > 0) path[before].if_behind_specular = 1 / s.survival_to_light;
     path.push_back(next);
     if (next.x.infinite()) return;
   }
@@ -90,11 +93,12 @@ bool make_infinite_vertex(const Scene& scene, const Edge& edge, Vertex& x) {
 }
 
 double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, double pdf_reverse,
-                        Side side) {
+                        bool next_degenerate, Side side) {
   const double ratio = pdf_reverse / path[i].pdf;
   if (i == 0) return side == Side::Light && hittable(scene, path[0].x) ? ratio : 0;
   const bool connects = !path[i - 1].x.degenerate && !path[i].x.degenerate;
-  return ratio * (connects + path[i - 1].other_techniques);
+  const double factor = next_degenerate ? path[i - 1].if_behind_specular : 1.0;
+  return ratio * (connects + factor * path[i - 1].other_techniques);
 }
 
 void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path) {

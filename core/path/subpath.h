@@ -32,6 +32,8 @@ struct SubpathVertex {
   /// Σ_{j<i} p_j/p_i over the techniques that move the connection towards this subpath's end, i
   /// being this vertex; final once two more vertices follow.
   double other_techniques = 0;
+  /// Its factor if the vertex after the next turns out degenerate (light subpaths, see scatter()).
+  double if_behind_specular = 1;
   bool connects = false;
 };
 
@@ -66,8 +68,9 @@ inline Edge reversed(Edge edge) {
 
 /// Σ_{j<i} p_j/p_i for path[i] when the density of its being sampled from the other end has become
 /// known.
+/// `next_degenerate`: whether path[i + 1] is.
 double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, double pdf_reverse,
-                        Side side);
+                        bool next_degenerate, Side side);
 
 /// Whether a path may end at x₁ by running into it.
 inline bool hittable(const Scene& scene, const Vertex& x) {
