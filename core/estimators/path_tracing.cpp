@@ -124,8 +124,10 @@ bool PathTracer::scatter_on(const Arrival& at, SampleStream& eye, Flight& flight
   ++flight.vertices;
   if (flight.vertices > rr_depth_) {
     // The n² of radiance is undone when the ray leaves the glass again: it must not kill the path.
+    // No cap below one: where little is absorbed, dividing by it would let throughputs, and their
+    // variance, grow with every bounce.
     const double survival =
-        std::fmin(0.95, max_component(flight.throughput) * flight.index_ratio_squared);
+        std::fmin(1.0, max_component(flight.throughput) * flight.index_ratio_squared);
     if (!(u_roulette < survival)) return false;
     flight.throughput /= survival;
   }
