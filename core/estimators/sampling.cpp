@@ -8,24 +8,6 @@ namespace fogbow {
 
 namespace {
 
-/// Uniform numbers whose first two lie in one pixel: stratification of the raster.
-class PixelStream final : public SampleStream {
- public:
-  PixelStream(Rng& rng, const Vec2& corner, const Vec2& size)
-      : rng_(rng), corner_(corner), size_(size) {}
-  double next() override {
-    const double u = rng_.uniform();
-    if (count_ >= 2) return u;
-    const int axis = count_++;
-    return std::fmin(corner_[axis] + u * size_[axis], kOneMinusEpsilon);
-  }
-
- private:
-  Rng& rng_;
-  Vec2 corner_, size_;
-  int count_ = 0;
-};
-
 void add_at(std::vector<double>& sums, int k, double value) {
   if (sums.size() <= static_cast<std::size_t>(k)) sums.resize(k + 1);
   sums[k] += value;

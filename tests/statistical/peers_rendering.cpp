@@ -11,24 +11,6 @@ namespace fogbow::testing {
 
 namespace {
 
-/// Uniform numbers whose first two lie in one pixel.
-class PixelStream final : public SampleStream {
- public:
-  PixelStream(Rng& rng, const Vec2& corner, const Vec2& size)
-      : rng_(rng), corner_(corner), size_(size) {}
-  double next() override {
-    const double u = rng_.uniform();
-    if (count_ == 2) return u;
-    const int axis = count_++;
-    return std::fmin(corner_[axis] + u * size_[axis], kOneMinusEpsilon);
-  }
-
- private:
-  Rng& rng_;
-  Vec2 corner_, size_;
-  int count_ = 0;
-};
-
 /// Part by which the fault brightens a path that next-event estimation can make.
 double shadow_ray_excess(const Path& path) {
   const Vertex &x1 = path[0], &x2 = path[1];
