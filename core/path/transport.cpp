@@ -169,7 +169,7 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
   }
 }
 
-Vec2 invert_distance(const Scene&, const Edge& edge, const Vertex& end, const Vec2& auxiliary) {
+Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary) {
   const RGB weights =
       end.in_medium() ? end.medium->sigma_t(end.position()) * edge.tau_q : edge.tau_q;
   double choice = auxiliary.x * (weights.x + weights.y + weights.z);

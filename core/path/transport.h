@@ -28,8 +28,7 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
 
 /// The primary samples with which `extend` would have ended on `end`, drawn from their conditional
 /// law by uniform auxiliaries.
-Vec2 invert_distance(const Scene& scene, const Edge& edge, const Vertex& end,
-                     const Vec2& auxiliary);
+Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary);
 
 /// The edge from `a` to `b`, nothing if a surface is in between: V and τ at once. `a` lies on the
 /// light's side: the answer is a function of the path alone.

@@ -64,7 +64,7 @@ TEST(Extend, DistanceInvertsToUniformNumbersThatLeadBack) {
     Vertex y, again;
     Edge edge, edge_again;
     const auto result = extend(scene, x, w, uniform2(rng), y, edge);
-    const Vec2 u = invert_distance(scene, edge, y, uniform2(rng));
+    const Vec2 u = invert_distance(edge, y, uniform2(rng));
     ASSERT_EQ(extend(scene, x, w, u, again, edge_again), result);
     if (result == ExtendResult::Reached) {
       ASSERT_EQ(again.kind, y.kind);
