@@ -9,6 +9,7 @@ void ChainRecord::serialize(std::ostream& out) const {
   write_binary(out, independent_steps);
   write_binary_vector(out, length_share);
   write_binary_vector(out, length_squares);
+  classes.serialize(out);
 }
 
 ChainRecord ChainRecord::deserialize(std::istream& in) {
@@ -18,6 +19,7 @@ ChainRecord ChainRecord::deserialize(std::istream& in) {
   record.independent_steps = read_binary<std::uint64_t>(in);
   record.length_share = read_binary_vector<double>(in, 1 << 20);
   record.length_squares = read_binary_vector<double>(in, 1 << 20);
+  record.classes = ClassTally::deserialize(in);
   record.of_state_.resize(record.length_share.size());
   return record;
 }

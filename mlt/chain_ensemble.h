@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <chrono>
 #include <functional>
 #include <optional>
 #include <vector>
@@ -8,6 +9,7 @@
 #include "core/math/random.h"
 #include "core/util/parallel.h"
 #include "mlt/chain.h"
+#include "mlt/class_tally.h"
 #include "mlt/normalization.h"
 
 namespace fogbow {
@@ -18,6 +20,7 @@ struct ChainRecord {
   std::uint64_t independent_steps = 0;
   /// By k: expected-value time share of paths of k vertices, and the same of the share's square.
   std::vector<double> length_share, length_squares;
+  ClassTally classes;  ///< of chains of paths alone
 
   /// Luminance of one contribution of the current state, as a part of f*.
   void gather(int k, double part) {
@@ -56,8 +59,7 @@ class ChainEnsemble {
         chains_(Film::kGroups * chains_per_group),
         records_(chains_.size()) {
     parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
-      chains_[i].emplace(start(group_of(i), static_cast<std::uint64_t>(i)));
-      chains_[i]->prepare(table_.size());
+      chains_[i].emplace(start(group_of(i), static_cast<std::uint64_t>(i)), table_);
     });
   }
 
@@ -83,9 +85,14 @@ class ChainEnsemble {
     Chain<State>& chain = *chains_[i];
     Rng rng(seed_, RngDomain::Chain, i, chain.steps());
     Rng offsets(seed_, RngDomain::Film, i, chain.steps());
+    const bool timed = chain.steps() % kTimedStep == 0;
+    const auto start = timed ? Clock::now() : Clock::time_point();
     const StepInfo info = chain.step(table_, rng, splatter(i, offsets, film));
+    if (timed)
+      chain.time(info.mutation, std::chrono::duration<double>(Clock::now() - start).count());
     if (table_[info.mutation]->independent()) {
-      const double f_star = info.proposal.rejection ? 0 : info.f_star_y;
+      const double f_star =
+          info.proposal.rejection ? 0 : std::exp(info.log_f_star_y - info.proposal.log_density);
       records_[i].independent_f_star += f_star;
       records_[i].independent_squares += f_star * f_star;
       ++records_[i].independent_steps;
@@ -108,23 +115,30 @@ class ChainEnsemble {
       records_[i].serialize(out);
     }
   }
-  /// Into an ensemble made with the same arguments.
-  void deserialize(std::istream& in) {
+  /// Into an ensemble made with the same arguments; `read` makes a State of a stream.
+  void deserialize(std::istream& in, const std::function<State(std::istream&)>& read) {
     for (std::size_t i = 0; i < size(); ++i) {
-      chains_[i].emplace(Chain<State>::deserialize(in));
+      chains_[i].emplace(Chain<State>::deserialize(in, table_, read));
       records_[i] = ChainRecord::deserialize(in);
     }
   }
 
  private:
+  using Clock = std::chrono::steady_clock;
+  /// One step in so many is timed: the clock costs a part of a step.
+  static constexpr std::uint64_t kTimedStep = 61;
+
   auto splatter(std::size_t i, Rng& offsets, Film& film) {
     return [this, i, &offsets, &film](const State& x, double weight) {
       ChainRecord& record = records_[i];
+      double f_star = 0;  // in the unit of the contributions
+      for (const Contribution& c : x.contributions()) f_star += luminance(c.value);
       for (const Contribution& c : x.contributions()) {
-        film.splat(c.raster, c.value * (weight / x.f_star()), group_of(i), uniform2(offsets));
-        record.gather(c.k, luminance(c.value) / x.f_star());
+        film.splat(c.raster, c.value * (weight / f_star), group_of(i), uniform2(offsets));
+        record.gather(c.k, luminance(c.value) / f_star);
       }
       record.settle(weight);
+      if constexpr (requires { x.path(); }) record.classes.add(path_class(x.path()), weight);
     };
   }
 

@@ -3,6 +3,7 @@
 #include <array>
 #include <cstdint>
 #include <optional>
+#include <span>
 #include <string_view>
 
 #include "core/util/rng.h"
@@ -29,7 +30,12 @@ struct Proposal {
   /// included; the target is not in it [Green1995].
   double log_ratio = 0;
   std::optional<Rejection> rejection;
+  /// Log density of ȳ where it does not depend on x̄: f*(ȳ) over it estimates b.
+  double log_density = 0;
+  /// Index into the mutation's kinds(), for statistics.
+  int kind = 0;
 };
+inline Proposal refuse(Rejection why, int kind = 0) { return {0, why, 0, kind}; }
 
 /// Proposes ȳ from x̄. All state lives in the chain; x̄ is never written to.
 template <class State>
@@ -39,8 +45,10 @@ class Mutation {
   virtual const char* name() const = 0;
   /// Unnormalized π(x̄); the chain multiplies π(ȳ)/π(x̄).
   virtual double selection_weight(const State& x) const = 0;
-  /// Whether ȳ does not depend on x̄, and f*(ȳ) therefore estimates b.
+  /// Whether ȳ does not depend on x̄.
   virtual bool independent() const { return false; }
+  /// Kinds of proposals that statistics tell apart; empty where there is but one.
+  virtual std::span<const std::string_view> kinds() const { return {}; }
   /// Writes ȳ, its f* included.
   virtual Proposal propose(const State& x, State& y, Rng& rng) const = 0;
 };

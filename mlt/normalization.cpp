@@ -126,4 +126,31 @@ PrimarySample Bootstrap::start(int group, std::uint64_t chain) const {
   return x;
 }
 
+std::vector<std::vector<double>> pilot_techniques(const Estimator& estimator, std::uint64_t seed,
+                                                  std::uint64_t samples) {
+  using Table = std::vector<std::vector<double>>;
+  const std::uint64_t blocks = (samples + kBlock - 1) / kBlock;
+  std::vector<Table> tables(blocks);
+  const auto entry = [](Table& table, std::size_t k, std::size_t s) -> double& {
+    if (table.size() <= k) table.resize(k + 1);
+    if (table[k].size() <= s) table[k].resize(s + 1);
+    return table[k][s];
+  };
+  parallel_for(static_cast<std::int64_t>(blocks), [&](std::int64_t block) {
+    PrimarySample x;
+    for (std::uint64_t i = 0; i < kBlock; ++i) {
+      Rng rng(seed, RngDomain::WarmUp, static_cast<std::uint64_t>(block) * kBlock + i, 1);
+      x.draw(estimator, rng);
+      for (const Contribution& c : x.contributions())
+        entry(tables[block], c.k, c.s) += luminance(c.value);
+    }
+  });
+  // Blocks are summed in their order: no number of threads changes the result.
+  Table sum;
+  for (const Table& table : tables)
+    for (std::size_t k = 0; k < table.size(); ++k)
+      for (std::size_t s = 0; s < table[k].size(); ++s) entry(sum, k, s) += table[k][s];
+  return sum;
+}
+
 }  // namespace fogbow

@@ -38,6 +38,11 @@ struct ReplicateMean {
 };
 ReplicateMean replicate_mean(const std::array<double, Film::kGroups>& replicates);
 
+/// Luminance that BDPT's techniques carry, by k and s; from samples of its own, so that what is
+/// made of it does not depend on where chains start.
+std::vector<std::vector<double>> pilot_techniques(const Estimator& estimator, std::uint64_t seed,
+                                                  std::uint64_t samples);
+
 /// Independent estimates from which chains start.
 class Bootstrap {
  public:

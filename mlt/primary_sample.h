@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cmath>
 #include <iosfwd>
 #include <vector>
 
@@ -15,6 +16,11 @@ class PrimarySample {
  public:
   /// Luminance of all contributions together.
   double f_star() const { return f_star_; }
+  double log_f_star() const { return std::log(f_star_); }
+  /// Of the eye's subpath.
+  Vec2 raster() const { return eye_.size() < 2 ? Vec2(0) : Vec2(eye_[0], eye_[1]); }
+  /// The subpaths that the contributions are made of.
+  const Workspace& workspace() const { return workspace_; }
   const std::vector<Contribution>& contributions() const { return workspace_.contributions; }
   const std::vector<double>& light() const { return light_; }
   const std::vector<double>& eye() const { return eye_; }

@@ -24,7 +24,7 @@ struct RenderProgress {
 };
 
 struct RenderOptions {
-  std::string integrator = "auto";  ///< auto, file, path, light, bdpt, pssmlt
+  std::string integrator = "auto";  ///< auto, file, path, light, bdpt, pssmlt, mlt
   /// Integrator properties that override the scene's, as text.
   std::vector<std::pair<std::string, std::string>> overrides;
   std::optional<double> seconds;            ///< wall-clock budget
@@ -39,17 +39,25 @@ struct RenderOptions {
       nullptr;  ///< asks for one on_picture at the next round; the caller resets it
 };
 
-/// b_k^c: mean luminance carried by the paths of one length (vertices), with standard error between
-/// groups.
+/// Mean luminance carried by the paths of k vertices, with standard error between groups.
 struct ClassShare {
   int k = 0;
   double value = 0, standard_error = 0;
+  std::string configuration = {};  ///< for b_k^c: "SMS…" from light to eye, M in media
 };
 
 struct MutationReport {
   std::string name;
   std::uint64_t proposed = 0, accepted = 0;
   std::map<std::string, std::uint64_t> rejected;  ///< by kind
+  double mean_squared_jump = 0;  ///< E[a |Δraster|²], Δraster in parts of the picture
+  double time_share = 0;         ///< of all steps
+  double seconds_per_proposal = 0;
+  struct Kind {
+    std::string name;
+    std::uint64_t proposed = 0, accepted = 0;
+  };
+  std::vector<Kind> kinds;  ///< where the mutation tells proposals apart
 };
 
 struct RenderResult {
@@ -65,6 +73,7 @@ struct RenderResult {
   bool interrupted = false;
   bool groups_disagree = false;  ///< b differs between groups by more than a tenth of itself
   std::vector<ClassShare> lengths;
+  std::vector<ClassShare> classes;  ///< b_k^c, from the largest; chains of paths alone
   std::vector<MutationReport> mutations;
   std::map<std::string, double> diagnostics;  ///< R-hat, ESS, …
   std::vector<std::string>

@@ -1,10 +1,15 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <map>
+#include <ostream>
 #include <sstream>
 
 #include "mlt/chain_ensemble.h"
 #include "mlt/diagnostics.h"
 #include "mlt/mutations/primary_sample_mutations.h"
+#include "mlt/registry.h"
 #include "mlt/render_parts.h"
+#include "mlt/technique_distribution.h"
 
 namespace fogbow {
 
@@ -20,20 +25,69 @@ constexpr double kNotableShare = 0.01;
 /// Steps of every chain between two looks at the clock.
 constexpr std::uint64_t kStepsPerRound = 64;
 
-/// Everything a render by chains of primary samples holds.
+std::ostream& operator<<(std::ostream& out, const Vec2& v) {
+  return out << '(' << v.x << ", " << v.y << ')';
+}
+std::ostream& operator<<(std::ostream& out, const Vec3& v) {
+  return out << '(' << v.x << ", " << v.y << ", " << v.z << ')';
+}
+
+/// What the chains of an integrator are made of; starts and readers of saved states.
+struct PrimarySampleChains {
+  using State = PrimarySample;
+  MutationTable<State> table;
+
+  PrimarySampleChains(const Scene&, const RenderSettings& settings, const Estimator& estimator,
+                      std::uint64_t)
+      : table(make_primary_sample_mutations(estimator, settings.large_step_probability)) {}
+  State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
+    return bootstrap.start(group, chain);
+  }
+};
+
+struct PathChains {
+  using State = PathSample;
+  const Scene& scene;
+  int max_vertices;
+  std::uint64_t seed;
+  TechniqueDistribution techniques;
+  MutationTable<State> table;
+
+  PathChains(const Scene& s, const RenderSettings& settings, const Estimator& estimator,
+             std::uint64_t seed_)
+      : scene(s),
+        max_vertices(settings.max_depth + 1),
+        seed(seed_),
+        techniques(pilot_techniques(estimator, seed, settings.bootstrap_samples / kPilot),
+                   max_vertices),
+        table(make_path_mutations(settings.mutations, techniques, max_vertices)) {}
+  State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
+    Rng rng(seed, RngDomain::WarmUp, chain, 2);
+    return PathSample::choose(scene, max_vertices, bootstrap.start(group, chain), rng.uniform());
+  }
+
+ private:
+  /// Samples of the bootstrap for one that learns how techniques share the light.
+  static constexpr int kPilot = 8;
+};
+
+/// Everything a render by chains holds.
+template <class Chains>
 struct ChainRender {
+  using State = typename Chains::State;
   std::unique_ptr<Estimator> estimator;
-  MutationTable<PrimarySample> table;
+  Chains chains;
   Bootstrap bootstrap;
-  ChainEnsemble<PrimarySample> ensemble;
+  ChainEnsemble<State> ensemble;
 
   ChainRender(const Scene& scene, const RenderSettings& settings, std::uint64_t seed)
       : estimator(make_estimator(scene, settings)),
-        table(make_primary_sample_mutations(*estimator, settings.large_step_probability)),
+        chains(scene, settings, *estimator, seed),
         bootstrap(*estimator, seed, std::max(1, settings.bootstrap_samples / Film::kGroups)),
-        ensemble(table, seed, settings.chains_per_group,
-                 [this](int group, std::uint64_t chain) { return bootstrap.start(group, chain); }) {
-  }
+        ensemble(chains.table, seed, settings.chains_per_group,
+                 [this](int group, std::uint64_t chain) {
+                   return chains.start(bootstrap, group, chain);
+                 }) {}
 
   /// Bootstrap and large steps together: consistent.
   Normalization normalization() const {
@@ -91,22 +145,70 @@ struct ChainRender {
     return convergence(moments, steps);
   }
 
+  /// b_k^c of all classes, from the largest.
+  std::vector<ClassShare> class_shares(const GroupScale& scale) const {
+    std::map<PathClass, std::array<double, Film::kGroups>> groups;
+    for (std::size_t i = 0; i < ensemble.size(); ++i) {
+      std::map<PathClass, double> sums;
+      ensemble.record(i).classes.add_to(sums);
+      const int g = ensemble.group_of(i);
+      for (const auto& [c, share] : sums) groups[c][g] += share * scale[g];
+    }
+    std::vector<ClassShare> result;
+    for (const auto& [c, values] : groups) {
+      const ReplicateMean m = replicate_mean(values);
+      result.push_back({c.k, m.mean, m.standard_error, configuration_text(c)});
+    }
+    std::ranges::stable_sort(result, std::greater(), &ClassShare::value);
+    return result;
+  }
+
   std::vector<MutationReport> reports() const {
+    std::vector<MutationCounts> sums(chains.table.size());
+    double seconds = 0;  // of all steps, by those that were timed
+    for (std::size_t m = 0; m < sums.size(); ++m) {
+      for (std::size_t i = 0; i < ensemble.size(); ++i) sums[m].add(ensemble.chain(i).counts()[m]);
+      seconds += sums[m].seconds;
+    }
     std::vector<MutationReport> result;
-    for (std::size_t m = 0; m < table.size(); ++m) {
-      MutationCounts sum;
-      for (std::size_t i = 0; i < ensemble.size(); ++i) sum.add(ensemble.chain(i).counts()[m]);
-      MutationReport report{table[m]->name(), sum.proposed, sum.accepted, {}};
-      for (std::size_t r = 0; r < sum.rejected.size(); ++r)
-        if (sum.rejected[r] > 0) report.rejected[std::string(kRejectionNames[r])] = sum.rejected[r];
+    for (std::size_t m = 0; m < sums.size(); ++m) {
+      MutationReport report = describe(*chains.table[m], sums[m]);
+      if (seconds > 0) report.time_share = sums[m].seconds / seconds;
       result.push_back(std::move(report));
     }
     return result;
   }
+
+ private:
+  static MutationReport describe(const Mutation<State>& mutation, const MutationCounts& sum) {
+    MutationReport report;
+    report.name = mutation.name();
+    report.proposed = sum.proposed;
+    report.accepted = sum.accepted;
+    for (std::size_t r = 0; r < sum.rejected.size(); ++r)
+      if (sum.rejected[r] > 0) report.rejected[std::string(kRejectionNames[r])] = sum.rejected[r];
+    if (sum.proposed > 0)
+      report.mean_squared_jump = sum.squared_jump / static_cast<double>(sum.proposed);
+    if (sum.timed > 0) report.seconds_per_proposal = sum.seconds / static_cast<double>(sum.timed);
+    const auto kinds = mutation.kinds();
+    for (std::size_t i = 0; i < kinds.size(); ++i)
+      report.kinds.push_back({std::string(kinds[i]), sum.proposed_kind[i], sum.accepted_kind[i]});
+    return report;
+  }
+
+  /// From light to eye.
+  static std::string configuration_text(const PathClass& c) {
+    if (c.k == 0) return "all others";
+    if (c.k > 32) return "k = " + std::to_string(c.k);
+    std::string text;
+    for (int i = 0; i < c.k; ++i) text += (c.c >> i & 1) ? 'M' : 'S';
+    return text;
+  }
 };
 
 /// R̂ and effective sample size of each notable path length, and the worst of them.
-void diagnose(const ChainRender& r, double render_seconds, RenderResult& result) {
+template <class Render>
+void diagnose(const Render& r, double render_seconds, RenderResult& result) {
   double r_hat = 0, ess = std::numeric_limits<double>::infinity();
   for (const ClassShare& length : result.lengths) {
     if (length.value < kNotableShare * result.b) continue;
@@ -123,12 +225,11 @@ void diagnose(const ChainRender& r, double render_seconds, RenderResult& result)
   result.diagnostics["ess_per_second"] = ess / std::fmax(render_seconds, 1e-9);
 }
 
-}  // namespace
-
-RenderResult render_chains(const Scene& scene, const RenderOptions& options,
-                           const RenderSettings& settings, Session& session) {
+template <class Chains>
+RenderResult render_by(const Scene& scene, const RenderOptions& options,
+                       const RenderSettings& settings, Session& session) {
   session.announce("bootstrap");
-  ChainRender r(scene, settings, options.seed);
+  ChainRender<Chains> r(scene, settings, options.seed);
   Film film(scene.film(), kChainFilmExponent);
   session.begin_rendering();
 
@@ -158,6 +259,7 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
   result.samples = r.ensemble.total_steps();
   result.chains = static_cast<int>(chains);
   result.lengths = length_shares(r.tally(), r.group_scale(n));
+  result.classes = r.class_shares(r.group_scale(n));
   result.mutations = r.reports();
   result.groups_disagree = n.standard_error() > kDisagreement * n.b();
   result.diagnostics["normalization_chi2"] = n.disagreement();
@@ -170,6 +272,63 @@ RenderResult render_chains(const Scene& scene, const RenderOptions& options,
   return result;
 }
 
+void print_state(std::ostream& out, const char* title, const PrimarySample& x) {
+  out << title << ": log f* = " << x.log_f_star() << ", " << x.light().size() << " + "
+      << x.eye().size() << " primary samples of light and eye\n";
+  for (const Contribution& c : x.contributions())
+    out << "  k=" << c.k << " s=" << c.s << " t=" << c.t << " raster=" << c.raster
+        << " value=" << c.value << "\n";
+}
+
+void print_state(std::ostream& out, const char* title, const PathSample& x) {
+  static constexpr const char* kKinds[] = {"surface", "medium", "point light", "infinite light",
+                                           "sensor"};
+  const MeasuredPath& path = x.path();
+  out << title << ": log f* = " << x.log_f_star() << ", k=" << path.size()
+      << " raster=" << x.raster() << "\n";
+  for (int i = 0; i < path.size(); ++i) {
+    out << "  x" << i + 1 << ' ' << kKinds[static_cast<int>(path[i].kind)]
+        << (path[i].degenerate ? " degenerate" : "") << " at " << path[i].position()
+        << " f_hat=" << path.scattering(i).f_hat;
+    if (i < path.last()) out << " tau=" << path.edge(i).tau << " length=" << path.edge(i).length;
+    out << "\n";
+  }
+}
+
+template <class Chains>
+std::string replay_by(const Scene& scene, const RenderSettings& settings, std::uint64_t seed,
+                      std::uint64_t chain, std::uint64_t step) {
+  ChainRender<Chains> r(scene, settings, seed);
+  Film film(scene.film(), kChainFilmExponent);
+  while (r.ensemble.chain(chain).steps() < step) r.ensemble.step(chain, film);
+
+  std::ostringstream out;
+  out.precision(17);
+  print_state(out, "current", r.ensemble.chain(chain).state());
+  const StepInfo info = r.ensemble.step(chain, film);
+  const auto& c = r.ensemble.chain(chain);
+  // A refused proposal may be half written.
+  if (!info.proposal.rejection)
+    print_state(out, "proposal", info.accepted ? c.state() : c.proposed());
+  out << "mutation " << r.chains.table[info.mutation]->name() << ": log ratio "
+      << info.proposal.log_ratio << ", pi " << info.selection_x << " -> " << info.selection_y
+      << ", log f* " << info.log_f_star_x << " -> " << info.log_f_star_y << ", a = " << info.a
+      << (info.accepted ? ", accepted" : ", not accepted");
+  if (info.proposal.rejection)
+    out << ", refused: " << kRejectionNames[static_cast<std::size_t>(*info.proposal.rejection)];
+  out << "\n";
+  return out.str();
+}
+
+}  // namespace
+
+RenderResult render_chains(const Scene& scene, const RenderOptions& options,
+                           const RenderSettings& settings, Session& session) {
+  return settings.integrator == "mlt"
+             ? render_by<PathChains>(scene, options, settings, session)
+             : render_by<PrimarySampleChains>(scene, options, settings, session);
+}
+
 std::string replay(const Scene& scene, const RenderOptions& options, std::uint64_t seed,
                    std::uint64_t chain, std::uint64_t step) {
   const RenderSettings settings = read_render_settings(scene, options);
@@ -180,32 +339,9 @@ std::string replay(const Scene& scene, const RenderOptions& options, std::uint64
   if (chain >= chains)
     throw Error(ErrorKind::Usage, "there is no chain " + std::to_string(chain) +
                                       ": chains are 0 to " + std::to_string(chains - 1));
-  ChainRender r(scene, settings, seed);
-  Film film(scene.film(), kChainFilmExponent);
-  while (r.ensemble.chain(chain).steps() < step) r.ensemble.step(chain, film);
-
-  std::ostringstream out;
-  out.precision(17);
-  const auto print_state = [&](const char* title, const PrimarySample& x) {
-    out << title << ": f* = " << x.f_star() << ", " << x.light().size() << " + " << x.eye().size()
-        << " primary samples of light and eye\n";
-    for (const Contribution& c : x.contributions())
-      out << "  k=" << c.k << " s=" << c.s << " t=" << c.t << " raster=(" << c.raster.x << ", "
-          << c.raster.y << ") value=(" << c.value.x << ", " << c.value.y << ", " << c.value.z
-          << ")\n";
-  };
-  print_state("current", r.ensemble.chain(chain).state());
-  const StepInfo info = r.ensemble.step(chain, film);
-  const Chain<PrimarySample>& c = r.ensemble.chain(chain);
-  print_state("proposal", info.accepted ? c.state() : c.proposed());
-  out << "mutation " << r.table[info.mutation]->name() << ": log ratio " << info.proposal.log_ratio
-      << ", pi " << info.selection_x << " -> " << info.selection_y << ", f* " << info.f_star_x
-      << " -> " << info.f_star_y << ", a = " << info.a
-      << (info.accepted ? ", accepted" : ", not accepted");
-  if (info.proposal.rejection)
-    out << ", refused: " << kRejectionNames[static_cast<std::size_t>(*info.proposal.rejection)];
-  out << "\n";
-  return out.str();
+  return settings.integrator == "mlt"
+             ? replay_by<PathChains>(scene, settings, seed, chain, step)
+             : replay_by<PrimarySampleChains>(scene, settings, seed, chain, step);
 }
 
 }  // namespace fogbow

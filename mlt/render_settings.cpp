@@ -27,7 +27,7 @@ std::string own_integrator(const std::string& type) {
   if (type == "path" || type == "volpath" || type == "volpathmis") return "path";
   if (type == "light" || type == "ptracer") return "light";
   if (type == "bdpt") return "bdpt";
-  if (type == "pssmlt" || type == "mlt") return "pssmlt";
+  if (type == "pssmlt" || type == "mlt") return type;
   return {};
 }
 
@@ -41,6 +41,8 @@ bool apply(RenderSettings& settings, const std::string& name, const std::string&
     settings.rr_depth = parse_number<int>(name, value, 0, 1 << 16);
   } else if (name == "p_large" || name == "pLarge") {
     settings.large_step_probability = parse_number<double>(name, value, 1e-3, 1);
+  } else if (name == "mutations") {
+    settings.mutations = parse_mutation_weights(value);
   } else if (name == "luminance_samples" || name == "luminanceSamples") {
     settings.bootstrap_samples = parse_number<int>(name, value, 8, 1 << 28);
   } else if (name == "chains") {
@@ -62,10 +64,10 @@ RenderSettings read_render_settings(const Scene& scene, const RenderOptions& opt
   const IntegratorSettings& asked = scene.description().integrator;
   const bool obey = options.integrator == "file";
   const std::string type = obey ? asked.type : options.integrator;
-  settings.integrator = type == "auto" || (obey && type.empty()) ? "pssmlt" : own_integrator(type);
+  settings.integrator = type == "auto" || (obey && type.empty()) ? "mlt" : own_integrator(type);
   if (settings.integrator.empty())
     throw Error(ErrorKind::Usage, "unknown integrator \"" + type +
-                                      "\", expected auto, file, path, light, bdpt or pssmlt");
+                                      "\", expected auto, file, path, light, bdpt, pssmlt or mlt");
   if (!asked.type.empty() && asked.type != settings.integrator)
     settings.notes.push_back("the scene asks for integrator \"" + asked.type +
                              "\"; rendered by \"" + settings.integrator + "\"");
@@ -76,7 +78,7 @@ RenderSettings read_render_settings(const Scene& scene, const RenderOptions& opt
     if (!apply(settings, name, value))
       throw Error(ErrorKind::Usage, "unknown integrator property \"" + name +
                                         "\", expected max_depth, rr_depth, p_large, "
-                                        "luminance_samples, chains or sample_count");
+                                        "mutations, luminance_samples, chains or sample_count");
   return settings;
 }
 

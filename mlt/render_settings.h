@@ -4,18 +4,20 @@
 #include <vector>
 
 #include "core/scene/scene.h"
+#include "mlt/registry.h"
 #include "mlt/render.h"
 
 namespace fogbow {
 
 /// Integrator properties after the scene's and the overrides have been read.
 struct RenderSettings {
-  std::string integrator;  ///< path, light, bdpt or pssmlt
-  bool uses_chains() const { return integrator == "pssmlt"; }
+  std::string integrator;  ///< path, light, bdpt, pssmlt or mlt
+  bool uses_chains() const { return integrator == "pssmlt" || integrator == "mlt"; }
   int max_depth = 0;
   bool depth_capped = false;  ///< the scene sets no limit, and ours stands in for it
   int rr_depth = 5;
-  double large_step_probability = 0.3;
+  double large_step_probability = 0.3;                     ///< pssmlt
+  MutationWeights mutations = default_mutation_weights();  ///< mlt
   int chains_per_group = 32;
   int bootstrap_samples = 1 << 17;
   double samples_per_pixel = 64;  ///< where neither time nor samples are asked for

@@ -64,7 +64,7 @@ void add_scene_arguments(CLI::App& app, SceneArguments& scene) {
 void add_integrator_arguments(CLI::App& app, IntegratorArguments& integrator) {
   app.add_option(
          "--integrator", integrator.name,
-         "path, light, bdpt, pssmlt; auto: the best there is; file: what the scene asks for")
+         "path, light, bdpt, pssmlt, mlt; auto: the best there is; file: what the scene asks for")
       ->type_name("NAME")
       ->capture_default_str();
   add_repeated(app, "--set", "integrator.KEY=VALUE", "Overrides a property of the integrator",

@@ -3,6 +3,8 @@
 
 #include <algorithm>
 #include <cinttypes>
+#include <cmath>
+#include <span>
 
 #include "apps/fogbow/console.h"
 
@@ -18,9 +20,11 @@ double per_second(double count, double seconds) { return seconds > 0 ? count / s
 
 std::string mutation_line(const MutationReport& mutation) {
   const auto proposed = static_cast<double>(mutation.proposed);
-  std::string line = format("  %-16s %s proposed, %.2f%% accepted", mutation.name.c_str(),
-                            with_si_prefix(proposed).c_str(),
-                            percent(static_cast<double>(mutation.accepted), proposed));
+  std::string line =
+      format("  %-16s %s proposed, %.2f%% accepted, %.0f%% of the time, rms jump %.2g",
+             mutation.name.c_str(), with_si_prefix(proposed).c_str(),
+             percent(static_cast<double>(mutation.accepted), proposed), 100 * mutation.time_share,
+             std::sqrt(mutation.mean_squared_jump));
   const char* separator = "; refused: ";
   for (const auto& [kind, count] : mutation.rejected) {
     if (count == 0) continue;
@@ -28,7 +32,14 @@ std::string mutation_line(const MutationReport& mutation) {
                    percent(static_cast<double>(count), proposed));
     separator = ", ";
   }
-  return line + "\n";
+  line += "\n";
+  for (const MutationReport::Kind& kind : mutation.kinds)
+    if (kind.proposed > 0)
+      line +=
+          format("    %-26s %s proposed, %.2f%% accepted\n", kind.name.c_str(),
+                 with_si_prefix(static_cast<double>(kind.proposed)).c_str(),
+                 percent(static_cast<double>(kind.accepted), static_cast<double>(kind.proposed)));
+  return line;
 }
 
 /// Lengths that carry next to nothing share a line; the JSON has them all.
@@ -49,6 +60,19 @@ std::string lengths_table(const RenderResult& result) {
   if (faint > 0)
     table += format("  %s more with %.2g%%\n", count_of(faint, "length").c_str(),
                     percent(rest, result.b));
+  return table;
+}
+
+/// The largest; the JSON has them all.
+std::string classes_table(const RenderResult& result) {
+  constexpr std::size_t kShown = 8;
+  std::string table =
+      "largest classes, from light to eye (S on surfaces, M in media; b_k^c, share of b):\n";
+  for (const ClassShare& share :
+       std::span(result.classes).first(std::min(kShown, result.classes.size())))
+    table += format("  %-12s %-26s %6.2f%%\n", share.configuration.c_str(),
+                    with_error(share.value, share.standard_error).c_str(),
+                    percent(share.value, result.b));
   return table;
 }
 
@@ -96,6 +120,7 @@ std::string report_text(const RenderRecord& record) {
                count_of(static_cast<std::uint64_t>(result.groups), "group").c_str());
   text += "\nb = " + with_error(result.b, result.b_stderr) + "\n";
   if (!result.lengths.empty()) text += lengths_table(result);
+  if (!result.classes.empty()) text += classes_table(result);
   if (!result.mutations.empty()) text += "mutations:\n";
   for (const MutationReport& mutation : result.mutations) text += mutation_line(mutation);
   text +=

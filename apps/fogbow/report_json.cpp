@@ -30,6 +30,13 @@ ordered_json scene_json(const RenderRecord& record) {
           {"crop", {image.x, image.y, image.width, image.height}}};
 }
 
+ordered_json kinds_json(const MutationReport& mutation) {
+  ordered_json kinds = ordered_json::object();
+  for (const MutationReport::Kind& kind : mutation.kinds)
+    kinds[kind.name] = {{"proposed", kind.proposed}, {"accepted", kind.accepted}};
+  return kinds;
+}
+
 ordered_json mutations_json(const RenderResult& result) {
   ordered_json list = ordered_json::array();
   for (const MutationReport& mutation : result.mutations) {
@@ -40,7 +47,11 @@ ordered_json mutations_json(const RenderResult& result) {
                     {"proposed", mutation.proposed},
                     {"accepted", mutation.accepted},
                     {"acceptance", acceptance},
-                    {"rejected", mutation.rejected}});
+                    {"rejected", mutation.rejected},
+                    {"mean_squared_raster_jump", mutation.mean_squared_jump},
+                    {"time_share", mutation.time_share},
+                    {"seconds_per_proposal", mutation.seconds_per_proposal},
+                    {"kinds", kinds_json(mutation)}});
   }
   return list;
 }
@@ -50,6 +61,16 @@ ordered_json lengths_json(const RenderResult& result) {
   for (const ClassShare& share : result.lengths)
     list.push_back(
         {{"k", share.k}, {"value", share.value}, {"standard_error", share.standard_error}});
+  return list;
+}
+
+ordered_json classes_json(const RenderResult& result) {
+  ordered_json list = ordered_json::array();
+  for (const ClassShare& share : result.classes)
+    list.push_back({{"configuration", share.configuration},
+                    {"k", share.k},
+                    {"value", share.value},
+                    {"standard_error", share.standard_error}});
   return list;
 }
 
@@ -88,6 +109,7 @@ std::string report_json(const RenderRecord& record) {
       {"integrator", result.integrator},
       {"b", with_error_json(result.b, result.b_stderr)},
       {"b_k", lengths_json(result)},
+      {"b_k_c", classes_json(result)},
       {"samples", result.samples},
       {"sample_unit", sample_unit(result.integrator)},
       {"chains", result.chains},

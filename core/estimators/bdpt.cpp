@@ -12,7 +12,7 @@ void add_emission(const Scene& scene, Workspace& w, int t, const Vec2& raster) {
   Vertex& x = w.eye[t - 1].x;
   const auto add = [&] {
     if (const auto c = run_into_light(scene, w.eye, t))
-      w.add({raster, c->weight * c->value, t, 0, t});
+      w.add({raster, c->weight * c->value, t, 0, t, x.infinite() ? x.emitter : -1});
   };
   if (!x.infinite()) return add();
   for (const int emitter : scene.infinite_emitters()) {

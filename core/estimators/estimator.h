@@ -12,8 +12,9 @@ namespace fogbow {
 struct Contribution {
   Vec2 raster;
   RGB value;
-  int k;     ///< vertices of the path
-  int s, t;  ///< vertices from the light and from the eye
+  int k;                      ///< vertices of the path
+  int s, t;                   ///< vertices from the light and from the eye
+  int infinite_emitter = -1;  ///< which of them the eye's subpath ran into, s = 0
 };
 
 /// Buffers an estimator reuses; one a thread or chain.

@@ -133,6 +133,19 @@ std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex
   return s;
 }
 
+std::optional<Vec3> specular_direction(const Scene& scene, const Vertex& x, const Vec3& from,
+                                       bool transmit) {
+  if (!x.on_surface() || !bsdf(scene, x).has_dirac()) return std::nullopt;
+  const Vec3 local = x.point.shading.to_local(from);
+  if (!transmit) return x.point.shading.to_world(Vec3(-local.x, -local.y, local.z));
+  const double eta = bsdf(scene, x).eta();
+  const double ratio = local.z > 0 ? 1 / eta : eta;  // n_from/n_to
+  const double cos2 = 1 - sqr(ratio) * (1 - sqr(local.z));
+  if (eta == 1 || !(cos2 > 0)) return std::nullopt;
+  const double z = std::copysign(std::sqrt(cos2), -local.z);
+  return x.point.shading.to_world(Vec3(-ratio * local.x, -ratio * local.y, z));
+}
+
 double relative_index(const Scene& scene, const Vertex& x, const Vec3& w) {
   if (!x.on_surface()) return 1;
   return index_at(bsdf(scene, x), x.point.shading.to_local(w));

@@ -58,6 +58,11 @@ std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex
 /// surfaces.
 double relative_index(const Scene& scene, const Vertex& x, const Vec3& w);
 
+/// Where the Dirac part of x's BSDF sends what comes from `from`, by reflection or by transmission;
+/// nothing where it has no such part or reflects totally.
+std::optional<Vec3> specular_direction(const Scene& scene, const Vertex& x, const Vec3& from,
+                                       bool transmit);
+
 /// Whether a subpath may end at x to be connected there.
 bool connectible(const Scene& scene, const Vertex& x);
 

@@ -1,16 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/path/path.h"
 
+#include "core/path/specular_chain.h"
+
 namespace fogbow {
 
 namespace {
-
-/// Unit direction from path[i] to path[j], its neighbour.
-Vec3 direction(const Path& path, int i, int j) {
-  if (path[i].infinite()) return path[i].point.n_g;
-  if (path[j].infinite()) return -path[j].point.n_g;
-  return normalize(path[j].position() - path[i].position());
-}
 
 RGB f_hat_at(const Scene& scene, const Path& path, int i) {
   return f_hat(scene, path[i], direction(path, i, i - 1), direction(path, i, i + 1),
@@ -43,16 +38,13 @@ double pdf_from_eye(const Scene& scene, const Path& path, int i) {
   return pdf_arrival(path[i], reversed(*edge), pdf_sigma);
 }
 
-/// The Dirac part of f̂ as a factor on radiance that comes from the light: C with the shading
-/// normals' correction.
-RGB specular_factor(const Scene& scene, const Path& path, int i) {
-  const Vec3 w_eye = direction(path, i, i + 1);
-  const SurfacePoint& p = path[i].point;
-  const double cosines = std::abs(dot(p.n_g, w_eye) / dot(p.shading.n, w_eye));
-  return f_hat_at(scene, path, i) * cosines / sqr(relative_index(scene, path[i], w_eye));
-}
-
 }  // namespace
+
+Vec3 direction(const Path& path, int i, int j) {
+  if (path[i].infinite()) return path[i].point.n_g;
+  if (path[j].infinite()) return -path[j].point.n_g;
+  return normalize(path[j].position() - path[i].position());
+}
 
 PathConfiguration configuration(const Path& path) {
   FOGBOW_CHECK(path.size() <= kMaxVertices);
@@ -103,6 +95,12 @@ std::optional<Vec2> raster(const Scene& scene, const Path& path) {
   return scene.sensor().raster(path[last].position(), direction(path, last, last - 1));
 }
 
+double dirac_to_reduced(const Scene& scene, const Vertex& x, const Vec3& w_eye) {
+  const SurfacePoint& p = x.point;
+  const double cosines = std::abs(dot(p.n_g, w_eye) / dot(p.shading.n, w_eye));
+  return cosines / sqr(relative_index(scene, x, w_eye));
+}
+
 RGB reduced_f(const Scene& scene, const Path& path) {
   const int k = static_cast<int>(path.size());
   RGB value = L_e(scene, path[0], direction(path, 0, 1));
@@ -113,7 +111,9 @@ RGB reduced_f(const Scene& scene, const Path& path) {
       const auto edge = connect(scene, path[i], path[i + 1]);
       if (!edge) return RGB(0);
       value *= edge->tau;
-      if (i > a) value *= specular_factor(scene, path, i);
+      if (i > a)
+        value *=
+            f_hat_at(scene, path, i) * dirac_to_reduced(scene, path[i], direction(path, i, i + 1));
     }
     value *= D(scene, path[a], direction(path, a, a + 1)) *
              D(scene, path[b], direction(path, b, b - 1)) * chain_jacobian(scene, path, a, b);

@@ -13,6 +13,9 @@ inline constexpr int kMaxVertices = 1024;
 /// x₁ … x_k, x₁ at the light.
 using Path = std::vector<Vertex>;
 
+/// Unit direction from path[i] to path[j], its neighbour.
+Vec3 direction(const Path& path, int i, int j);
+
 /// c, and which vertices are degenerate.
 struct PathConfiguration {
   int k = 0;
@@ -41,8 +44,8 @@ std::optional<Vec2> raster(const Scene& scene, const Path& path);
 /// between a and b enter as D_a J_{a→b} D_b ∏C. A density in μ of the non-degenerate vertices.
 RGB reduced_f(const Scene& scene, const Path& path);
 
-/// |dσ_a/dA⊥_b| from path[a] through the degenerate vertices between to path[b]; from infinity
-/// |dA⊥_a/dA⊥_b|. `a` may be greater than `b`: then seen from the eye's side.
-double chain_jacobian(const Scene& scene, const Path& path, int a, int b);
+/// By what the reduced f takes the Dirac value of f̂ at x, so that it is a factor on radiance that
+/// comes from the light: C with the shading normals' correction.
+double dirac_to_reduced(const Scene& scene, const Vertex& x, const Vec3& w_eye);
 
 }  // namespace fogbow

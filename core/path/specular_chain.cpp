@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/path/path.h"
+#include "core/path/specular_chain.h"
 
 namespace fogbow {
 
 namespace {
 
-/// A ray and its derivative with respect to one coordinate of its start (ray differentials,
-/// [Igehy1999]).
-struct RayDerivative {
-  Vec3 d_position, d_direction;
-};
+using RayDerivative = RayBundle::Derivative;
 
 /// From the ray's origin to the surface point at distance t.
 void transfer(RayDerivative& d, const Vec3& w, double t, const Vec3& n_g) {
@@ -45,37 +41,52 @@ void scatter_specularly(RayDerivative& d, const Vec3& w, const Vec3& w_out, Vec3
 
 }  // namespace
 
-double chain_jacobian(const Scene& scene, const Path& path, int a, int b) {
-  const int step = a < b ? 1 : -1;
-  const Vertex& start = path[a];
-  Vec3 w =
-      start.infinite() ? start.point.n_g : normalize(path[a + step].position() - start.position());
-  const Frame across(w);
+RayBundle::RayBundle(const Vertex& start, const Vec3& w) : w_(w), across_(w) {
   // A bundle from a point spreads in direction, a parallel one in position.
   const Vec3 zero(0);
-  RayDerivative d[2] = {{zero, across.s}, {zero, across.t}};
-  if (start.infinite()) {
-    d[0] = {across.s, zero};
-    d[1] = {across.t, zero};
+  d_[0] = start.infinite() ? Derivative{across_.s, zero} : Derivative{zero, across_.s};
+  d_[1] = start.infinite() ? Derivative{across_.t, zero} : Derivative{zero, across_.t};
+}
+
+void RayBundle::scatter(const Scene& scene, const Vertex& x, double t, const Vec3& w_out) {
+  const double ratio = relative_index(scene, x, -w_) / relative_index(scene, x, w_out);
+  const SurfaceDerivatives s = scene.surface(x.id.shape).shape->derivatives(x.point);
+  for (Derivative& d : d_) {
+    transfer(d, w_, t, x.point.n_g);
+    scatter_specularly(d, w_, w_out, x.point.shading.n, normal_derivative(s, d.d_position), ratio);
   }
-  for (int i = a; i != b; i += step) {
-    const Vertex& next = path[i + step];
-    const double t = path[i].infinite() ? 0 : length(next.position() - path[i].position());
-    if (i + step == b) {
-      for (RayDerivative& r : d) r.d_position += t * r.d_direction;
-      return 1 / std::abs(dot(w, cross(d[0].d_position, d[1].d_position)));
-    }
-    const Vec3 w_out = normalize(path[i + 2 * step].position() - next.position());
-    const double ratio = relative_index(scene, next, -w) / relative_index(scene, next, w_out);
-    const SurfaceDerivatives s = scene.surface(next.id.shape).shape->derivatives(next.point);
-    for (RayDerivative& r : d) {
-      transfer(r, w, t, next.point.n_g);
-      scatter_specularly(r, w, w_out, next.point.shading.n, normal_derivative(s, r.d_position),
-                         ratio);
-    }
-    w = w_out;
+  w_ = w_out;
+}
+
+std::array<Vec3, 2> RayBundle::spread(double t) const {
+  return {d_[0].d_position + t * d_[0].d_direction, d_[1].d_position + t * d_[1].d_direction};
+}
+
+double chain_jacobian(const Scene& scene, const Path& path, int a, int b) {
+  const int step = a < b ? 1 : -1;
+  const auto distance = [&](int i) {
+    return path[i].infinite() ? 0.0 : length(path[i + step].position() - path[i].position());
+  };
+  RayBundle bundle(path[a], direction(path, a, a + step));
+  int i = a;
+  for (; i + step != b; i += step)
+    bundle.scatter(scene, path[i + step], distance(i), direction(path, i + step, i + 2 * step));
+  const auto spread = bundle.spread(distance(i));
+  return 1 / std::abs(dot(direction(path, i, b), cross(spread[0], spread[1])));
+}
+
+double chain_correction(const Scene& scene, const Path& path, int a, int b) {
+  double correction = D(scene, path[a], direction(path, a, a + 1)) *
+                      D(scene, path[b], direction(path, b, b - 1)) *
+                      chain_jacobian(scene, path, a, b);
+  for (int i = a; i < b; ++i) {
+    Edge edge;
+    edge.w = direction(path, i, i + 1);
+    edge.length = length(path[i + 1].position() - path[i].position());
+    correction /= geometric_term(scene, path[i], path[i + 1], edge);
+    if (i > a) correction *= dirac_to_reduced(scene, path[i], edge.w);
   }
-  return 0;
+  return correction;
 }
 
 }  // namespace fogbow

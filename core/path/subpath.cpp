@@ -15,39 +15,48 @@ VertexKind vertex_kind(EmitterKind kind) {
   return VertexKind::Surface;
 }
 
-/// What arrival at `next` by free flight, after leaving `x` with f̂ and pdf_sigma along next.edge,
-/// makes of throughput and density.
-bool arrive(const Scene& scene, const SubpathVertex& x, const RGB& f, double pdf_sigma,
+/// What arrival by `step`, after leaving `x` with f̂, makes of throughput and density.
+bool arrive(const Scene& scene, const SubpathVertex& x, const RGB& f, const Step& step,
             SubpathVertex& next) {
-  const double distance = pdf_distance(next.edge, next.x);
+  next.x = step.next;
+  next.edge = step.edge;
+  const double distance = pdf_distance(step.edge, step.next);
   next.throughput =
-      x.throughput * f * (D(scene, x.x, next.edge.w) / pdf_sigma) * (next.edge.tau / distance);
+      x.throughput * f * (D(scene, x.x, step.edge.w) / step.pdf_sigma) * (step.edge.tau / distance);
+  next.pdf = distance * (x.x.infinite() ? step.pdf_sigma * D(scene, step.next, step.edge.w)
+                                        : to_measure(step.next, step.edge, step.pdf_sigma));
+  next.connects = connectible(scene, next.x);
   return is_finite(next.throughput) && !is_black(next.throughput);
+}
+
+/// Follows the ray; the eye also arrives at infinite emitters.
+bool go(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u_distance, Side side,
+        Step& step, double t_min = 0, double t_max = kInfinity) {
+  switch (extend(scene, x, w, u_distance, step.next, step.edge, t_min, t_max)) {
+    case ExtendResult::Reached: return true;
+    case ExtendResult::Escaped:
+    case ExtendResult::Lost:
+      // A far plane hides surfaces, not the sky.
+      if (side == Side::Light || !make_infinite_vertex(scene, step.edge, step.next)) return false;
+      step.edge.length = kInfinity;
+      return true;
+  }
+  return false;
 }
 
 /// Walks on from the last vertex, whose way here is path.back().edge.
 void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, Side side) {
   const bool eye = side == Side::Eye;
   while (static_cast<int>(path.size()) < max_vertices) {
-    const Vec3 u_direction = u.next3();
-    const double u_roulette = u.next();
-    const Vec2 u_distance = u.next2();
     SubpathVertex& x = path.back();
     const std::size_t before = path.size() - 2;
-    const auto sample = sample_direction(scene, x.x, -x.edge.w, side, u_direction, u_roulette,
-                                         eye && path[before].x.degenerate);
+    Step step;
+    const auto sample =
+        leave_vertex(scene, x.x, -x.edge.w, side, eye && path[before].x.degenerate, u, step);
     if (!sample) return;
     const Scattering& s = sample->scattering;
-    const double pdf_sigma = eye ? s.pdf_to_light : s.pdf_to_eye;
-
     SubpathVertex next;
-    const ExtendResult result = extend(scene, x.x, sample->w, u_distance, next.x, next.edge);
-    if (result != ExtendResult::Reached &&
-        !(eye && result == ExtendResult::Escaped && make_infinite_vertex(scene, next.edge, next.x)))
-      return;
-    if (!arrive(scene, x, s.f_hat, pdf_sigma, next)) return;
-    next.pdf = pdf_arrival(next.x, next.edge, pdf_sigma);
-    next.connects = connectible(scene, next.x);
+    if (!arrive(scene, x, s.f_hat, step, next)) return;
 
     x.x.degenerate = sample->degenerate;
     const double reverse =
@@ -61,6 +70,53 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
 }
 
 }  // namespace
+
+bool leave_emitter(const Scene& scene, const Vertex& x, const Vec2& u_direction,
+                   const Vec2& u_distance, Step& step) {
+  const Emitter& emitter = scene.emitter(x.emitter);
+  const EmitterDirection direction = emitter.sample_direction(emitter_point(x), u_direction);
+  step.pdf_sigma = direction.pdf_direction;
+  Vertex origin = x;
+  if (x.infinite()) {
+    origin.point.position = direction.origin;
+    origin.medium = scene.medium_around_emitter(x.emitter, direction.origin, kNoPrimitive);
+  }
+  if (!go(scene, origin, direction.w, u_distance, Side::Light, step)) return false;
+  if (x.infinite()) step.edge.length = kInfinity;
+  return true;
+}
+
+bool leave_sensor(const Scene& scene, const Vertex& x, const Vec2& raster, const Vec2& u_distance,
+                  Step& step) {
+  const Sensor& sensor = scene.sensor();
+  const SensorRay ray = sensor.sample_direction(x.position(), raster);
+  step.pdf_sigma = ray.pdf_sigma;
+  return go(scene, x, ray.w, u_distance, Side::Eye, step, sensor.near_distance(ray.w),
+            sensor.far_distance(ray.w));
+}
+
+std::optional<DirectionSample> leave_vertex(const Scene& scene, const Vertex& x, const Vec3& from,
+                                            Side side, bool behind_specular, SampleStream& u,
+                                            Step& step) {
+  const Vec3 u_direction = u.next3();
+  const double u_roulette = u.next();
+  const Vec2 u_distance = u.next2();
+  const auto sample =
+      sample_direction(scene, x, from, side, u_direction, u_roulette, behind_specular);
+  if (!sample) return std::nullopt;
+  const Scattering& s = sample->scattering;
+  step.pdf_sigma = side == Side::Eye ? s.pdf_to_light : s.pdf_to_eye;
+  if (!go(scene, x, sample->w, u_distance, side, step)) return std::nullopt;
+  return sample;
+}
+
+Vertex sample_sensor(const Scene& scene, const Vec2& u) {
+  Vertex x;
+  x.kind = VertexKind::Sensor;
+  x.point.position = scene.sensor().sample_position(u);
+  x.medium = scene.sensor_medium();
+  return x;
+}
 
 bool sample_emitter(const Scene& scene, SampleStream& u, SubpathVertex& start) {
   const double u_emitter = u.next();
@@ -108,26 +164,10 @@ void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, 
   path.push_back(start);
   const Vec2 u_direction = u.next2();
   const Vec2 u_distance = u.next2();
-  if (max_vertices < 2) return;
-
-  const Emitter& emitter = scene.emitter(start.x.emitter);
-  const EmitterPoint point = emitter_point(start.x);
-  const EmitterDirection direction = emitter.sample_direction(point, u_direction);
-  const RGB radiance = emitter.L_e(point, direction.w);
-  if (is_black(radiance)) return;
-
-  Vertex origin = start.x;
-  if (start.x.infinite()) {
-    origin.point.position = direction.origin;
-    origin.medium = scene.medium_around_emitter(start.x.emitter, direction.origin, kNoPrimitive);
-  }
+  Step step;
+  if (max_vertices < 2 || !leave_emitter(scene, start.x, u_direction, u_distance, step)) return;
   SubpathVertex next;
-  if (extend(scene, origin, direction.w, u_distance, next.x, next.edge) != ExtendResult::Reached)
-    return;
-  if (!arrive(scene, start, radiance, direction.pdf_direction, next)) return;
-  if (start.x.infinite()) next.edge.length = kInfinity;
-  next.pdf = pdf_emission(scene, start.x, next.x, next.edge) * pdf_distance(next.edge, next.x);
-  next.connects = connectible(scene, next.x);
+  if (!arrive(scene, start, L_e(scene, start.x, step.edge.w), step, next)) return;
   path.push_back(next);
   walk(scene, u, max_vertices, path, Side::Light);
 }
@@ -138,27 +178,16 @@ void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Su
   raster = u.next2();
   const Vec2 u_lens = u.next2();
   const Vec2 u_distance = u.next2();
-  const Sensor& sensor = scene.sensor();
   SubpathVertex start;
-  start.x.kind = VertexKind::Sensor;
-  start.x.point.position = sensor.sample_position(u_lens);
-  start.x.medium = scene.sensor_medium();
-  start.pdf = sensor.pdf_A(start.x.position());
+  start.x = sample_sensor(scene, u_lens);
+  start.pdf = scene.sensor().pdf_A(start.x.position());
   start.throughput = RGB(1 / start.pdf);
   start.connects = true;
   path.push_back(start);
-  if (max_vertices < 2) return;
-
-  const SensorRay ray = sensor.sample_direction(start.x.position(), raster);
+  Step step;
+  if (max_vertices < 2 || !leave_sensor(scene, start.x, raster, u_distance, step)) return;
   SubpathVertex next;
-  const ExtendResult result = extend(scene, start.x, ray.w, u_distance, next.x, next.edge,
-                                     sensor.near_distance(ray.w), sensor.far_distance(ray.w));
-  const bool beyond = result != ExtendResult::Reached;
-  if (beyond && !make_infinite_vertex(scene, next.edge, next.x)) return;
-  if (!arrive(scene, start, RGB(sensor.W_e(start.x.position(), ray.w)), ray.pdf_sigma, next))
-    return;
-  next.pdf = pdf_arrival(next.x, next.edge, ray.pdf_sigma);
-  next.connects = connectible(scene, next.x);
+  if (!arrive(scene, start, RGB(W_e(scene, start.x, step.edge.w)), step, next)) return;
   path.push_back(next);
   if (!next.x.infinite()) walk(scene, u, max_vertices, path, Side::Eye);
 }

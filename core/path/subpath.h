@@ -46,6 +46,26 @@ bool sample_emitter(const Scene& scene, SampleStream& u, SubpathVertex& start);
 /// nothing shines there.
 bool make_infinite_vertex(const Scene& scene, const Edge& edge, Vertex& x);
 
+/// One step of a subpath: where it has come to, by which way and with which density.
+struct Step {
+  Vertex next;
+  Edge edge;             ///< leads to `next`
+  double pdf_sigma = 0;  ///< of its direction (across the ray for infinite lights)
+};
+
+/// Light leaves x₁. False where it gets nowhere.
+bool leave_emitter(const Scene& scene, const Vertex& x, const Vec2& u_direction,
+                   const Vec2& u_distance, Step& step);
+/// The eye looks from x_k; ends also at infinite emitters.
+bool leave_sensor(const Scene& scene, const Vertex& x, const Vec2& raster, const Vec2& u_distance,
+                  Step& step);
+/// A subpath goes on from x; `from` is the direction it came from. Says how it was scattered.
+std::optional<DirectionSample> leave_vertex(const Scene& scene, const Vertex& x, const Vec3& from,
+                                            Side side, bool behind_specular, SampleStream& u,
+                                            Step& step);
+/// A point of the sensor.
+Vertex sample_sensor(const Scene& scene, const Vec2& u);
+
 /// Traces vertices from the emitters until roulette, absorption, escape or `max_vertices` ends the
 /// walk.
 void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path);

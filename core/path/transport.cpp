@@ -126,6 +126,31 @@ bool unobstructed(const Scene& scene, Ray ray, const Vertex& start, PrimitiveId 
   }
 }
 
+/// Follows the ray through boundaries to the first surface that stops it, and tells `passed(medium,
+/// t0, t1)` what it has come through.
+template <class Passed>
+ExtendResult follow(const Scene& scene, const Vertex& x, Ray ray, Vertex& next, double& t,
+                    Passed&& passed) {
+  const Medium* medium = medium_toward(scene, x, ray.d);
+  PrimitiveId from = x.id;
+  for (;;) {
+    ++ray_count;
+    const auto hit = scene.accel().intersect(ray, from);
+    t = hit ? hit->t : ray.t_max;
+    passed(medium, ray.t_min, t);
+    if (!hit) return t == kInfinity ? ExtendResult::Escaped : ExtendResult::Lost;
+    const Surface& surface = scene.surface(hit->id.shape);
+    const SurfacePoint point = scene.surface_point(*hit);
+    if (!passes(scene, surface, point)) {
+      make_surface_vertex(scene, *hit, point, medium, next);
+      return ExtendResult::Reached;
+    }
+    medium = behind(surface, point, ray.d, medium);
+    ray.t_min = t;
+    from = hit->id;
+  }
+}
+
 }  // namespace
 
 std::uint64_t rays_traced() { return RayCounter::total(); }
@@ -167,6 +192,63 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
     ray.t_min = t;
     from = hit->id;
   }
+}
+
+ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& w, Vertex& next,
+                               Edge& edge, double t_min, double t_max) {
+  const Ray ray{x.position(), w, t_min, t_max};
+  edge = Edge{w, 0, RGB(1), RGB(1)};
+  return follow(scene, x, ray, next, edge.length, [&](const Medium* medium, double t0, double t1) {
+    attenuate(edge, medium, ray, t0, t1);
+  });
+}
+
+void RayProfile::trace(const Scene& scene, const Vertex& x, const Vec3& w, double t_min,
+                       double t_max) {
+  ray_ = Ray{x.position(), w, t_min, t_max};
+  sections_.clear();
+  edge_ = Edge{w, 0, RGB(1), RGB(1)};
+  const auto pass = [&](const Medium* medium, double t0, double t1) {
+    sections_.push_back({t0, t1, medium, edge_.tau, edge_.tau_q});
+    attenuate(edge_, medium, ray_, t0, t1);
+  };
+  has_wall_ = follow(scene, x, ray_, wall_, edge_.length, pass) == ExtendResult::Reached;
+}
+
+const RayProfile::Section& RayProfile::section_at(double t) const {
+  std::size_t i = sections_.size() - 1;
+  while (i > 0 && t < sections_[i].begin) --i;
+  return sections_[i];
+}
+
+RGB RayProfile::tau_q(double t) const {
+  const Section& s = section_at(t);
+  if (!is_sampled(s.medium)) return s.tau_q;
+  return s.tau_q * glm::exp(-s.medium->optical_depth(ray_, s.begin, std::fmin(t, s.end)));
+}
+
+std::optional<double> RayProfile::distance(int channel, double u) const {
+  // The last section in which τ_q of the channel is still above 1 − u.
+  std::size_t i = sections_.size() - 1;
+  while (i > 0 && sections_[i].tau_q[channel] < 1 - u) --i;
+  const Section& s = sections_[i];
+  if (!is_sampled(s.medium)) return std::nullopt;
+  const double depth = std::log(s.tau_q[channel]) - std::log1p(-u);
+  return s.medium->distance(ray_, s.begin, s.end, channel, std::fmax(depth, 0.0));
+}
+
+const Medium* RayProfile::scatters_at(double t) const {
+  const Section& s = section_at(t);
+  return t > s.begin && t < s.end && s.medium && s.medium->scatters() ? s.medium : nullptr;
+}
+
+Vertex RayProfile::vertex(const Scene& scene, double t, Edge& edge) const {
+  const Section& s = section_at(t);
+  edge = Edge{ray_.d, t, s.tau, s.tau_q};
+  attenuate(edge, s.medium, ray_, s.begin, t);
+  Vertex y;
+  make_medium_vertex(scene, ray_(t), s.medium, y);
+  return y;
 }
 
 Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary) {

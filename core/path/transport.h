@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <optional>
+#include <vector>
 
 #include "core/path/vertex.h"
 
@@ -26,6 +27,10 @@ inline double pdf_distance(const Edge& edge, const Vertex& end) {
 ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u, Vertex& next,
                     Edge& edge, double t_min = 0, double t_max = kInfinity);
 
+/// The same to the first surface, whatever media lie before it. Escaped where there is none.
+ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& w, Vertex& next,
+                               Edge& edge, double t_min = 0, double t_max = kInfinity);
+
 /// The primary samples with which `extend` would have ended on `end`, drawn from their conditional
 /// law by uniform auxiliaries.
 Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary);
@@ -38,6 +43,46 @@ std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b
 /// between or no vertices are sampled there; `edge` leads to it.
 std::optional<Vertex> medium_vertex_at(const Scene& scene, const Vertex& x, const Vec3& w, double t,
                                        double t_min, Edge& edge);
+
+/// The media along a ray from a vertex to the first surface that stops it: where vertices can be on
+/// it, and how free flight spreads them.
+class RayProfile {
+ public:
+  /// Between t_min and t_max from `x` along `w`.
+  void trace(const Scene& scene, const Vertex& x, const Vec3& w, double t_min = 0,
+             double t_max = kInfinity);
+
+  /// Whether a surface ends the ray; else it escapes.
+  bool has_wall() const { return has_wall_; }
+  const Vertex& wall() const { return wall_; }
+  /// To the wall.
+  const Edge& edge() const { return edge_; }
+  double length() const { return edge_.length; }
+  Vec3 point(double t) const { return ray_(t); }
+
+  /// Transmittance of the sampled media up to distance t.
+  RGB tau_q(double t) const;
+  /// The distance where 1 − τ_q of one channel is u; nothing beyond the wall.
+  std::optional<double> distance(int channel, double u) const;
+  /// The scattering medium at distance t, null where there is none.
+  const Medium* scatters_at(double t) const;
+  /// The medium vertex at distance t, where scatters_at(t), and the edge that leads to it.
+  Vertex vertex(const Scene& scene, double t, Edge& edge) const;
+
+ private:
+  struct Section {
+    double begin, end;
+    const Medium* medium;
+    RGB tau, tau_q;  ///< up to its beginning
+  };
+  const Section& section_at(double t) const;
+
+  Ray ray_;
+  bool has_wall_ = false;
+  Vertex wall_;
+  Edge edge_;
+  std::vector<Section> sections_;
+};
 
 /// Rays traced by all threads so far.
 std::uint64_t rays_traced();

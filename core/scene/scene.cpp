@@ -61,9 +61,8 @@ Scene::Scene(SceneDescription description, bool strict) : description_(std::move
     if (!s.medium_boundary) continue;
     boundaries.push_back(s.shape.get());
     boundary_shapes_.push_back(i);
-    has_media_ |= s.interior || s.exterior;
   }
-  has_media_ |= description_.sensor_medium != nullptr;
+  list_media();
   accel_ = std::make_unique<Accel>(shapes);
   boundary_accel_ = std::make_unique<Accel>(boundaries);
   measure();
@@ -261,7 +260,7 @@ void Scene::locate_emitters() {
 }
 
 void Scene::drop_infinite_emitters_in_fog() {
-  if (!has_media_) return;
+  if (!has_media()) return;
   // Opaque at infinity in each of these directions, hence, one infers, in all.
   constexpr int kDirections = 32;
   for (int i = 0; i < kDirections; ++i) {
@@ -297,11 +296,9 @@ Bounds Scene::emission_bounds(const Medium* medium, const BoundaryReport& report
   return bounded ? inside : bounds_;
 }
 
-void Scene::add_volume_emitters(const BoundaryReport& report) {
-  std::vector<std::shared_ptr<const Medium>> emitting;
+void Scene::list_media() {
   const auto add = [&](const std::shared_ptr<const Medium>& medium) {
-    if (medium && medium->emits() && std::ranges::find(emitting, medium) == emitting.end())
-      emitting.push_back(medium);
+    if (medium && std::ranges::find(media_, medium) == media_.end()) media_.push_back(medium);
   };
   for (const Surface& s : surfaces()) {
     if (!s.medium_boundary) continue;
@@ -309,7 +306,11 @@ void Scene::add_volume_emitters(const BoundaryReport& report) {
     add(s.exterior);
   }
   add(description_.sensor_medium);
-  for (const auto& medium : emitting) {
+}
+
+void Scene::add_volume_emitters(const BoundaryReport& report) {
+  for (const auto& medium : media_) {
+    if (!medium->emits()) continue;
     const Bounds bounds = emission_bounds(medium.get(), report);
     if (!(bounds.volume() > 0))
       throw Error(ErrorKind::Scene,

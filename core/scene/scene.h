@@ -69,10 +69,12 @@ class Scene {
   const FilmSettings& film() const { return description_.film; }
   const SceneDescription& description() const { return description_; }
 
+  /// Every medium of the scene once, in the order of the description.
+  const std::vector<std::shared_ptr<const Medium>>& media() const { return media_; }
   /// The medium at a point that lies on no medium boundary (null: vacuum): that of the region
   /// between the boundaries which holds it.
   const Medium* medium_at(const Vec3& p, PrimitiveId on = kNoPrimitive) const;
-  bool has_media() const { return has_media_; }
+  bool has_media() const { return !media_.empty(); }
   bool has_null_surfaces() const { return has_null_surfaces_; }
 
   // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen in
@@ -118,7 +120,10 @@ class Scene {
   Bounds emission_bounds(const Medium* medium, const BoundaryReport& report) const;
   void warn(std::string message);
 
+  void list_media();
+
   SceneDescription description_;
+  std::vector<std::shared_ptr<const Medium>> media_;
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;       ///< of the medium boundaries alone
   std::vector<std::uint32_t> boundary_shapes_;  ///< ids in accel_ of boundary_accel_'s shapes
@@ -132,7 +137,7 @@ class Scene {
   DiscreteDistribution emitter_distribution_;
   Bounds bounds_;
   double radius_ = 0;
-  bool has_media_ = false, has_null_surfaces_ = false;
+  bool has_null_surfaces_ = false;
   std::vector<std::string> warnings_;
 };
 

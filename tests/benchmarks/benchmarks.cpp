@@ -14,6 +14,8 @@
 #include "mlt/chain.h"
 #include "mlt/mutations/primary_sample_mutations.h"
 #include "mlt/normalization.h"
+#include "mlt/registry.h"
+#include "mlt/technique_distribution.h"
 
 namespace fogbow {
 namespace {
@@ -73,22 +75,36 @@ void estimate(benchmark::State& state, const Estimator& estimator) {
   state.counters["rays/sample"] = rays / static_cast<double>(state.iterations());
 }
 
-void mutate(benchmark::State& state, const Estimator& estimator) {
-  const auto table = make_primary_sample_mutations(estimator, 0.3);
-  const Bootstrap bootstrap(estimator, kSeed, 2048);
-  Chain<PrimarySample> chain(bootstrap.start(0, 0));
-  chain.prepare(table.size());
+template <class State>
+void mutate(benchmark::State& state, const MutationTable<State>& table, State start) {
+  Chain<State> chain(std::move(start), table);
   const std::uint64_t before = rays_traced();
   for (auto _ : state) {
     Rng rng(kSeed, RngDomain::Chain, 0, chain.steps());
-    chain.step(table, rng, [](const PrimarySample& x, double weight) {
-      benchmark::DoNotOptimize(x.f_star() * weight);
+    chain.step(table, rng, [](const State& x, double weight) {
+      benchmark::DoNotOptimize(x.contributions().data());
+      benchmark::DoNotOptimize(weight);
     });
   }
   const auto rays = static_cast<double>(rays_traced() - before);
   state.counters["mutations/s"] = rate(static_cast<double>(state.iterations()));
   state.counters["rays/s"] = rate(rays);
   state.counters["rays/mutation"] = rays / static_cast<double>(state.iterations());
+}
+
+constexpr int kMaxDepth = 64;
+
+void mutate_samples(benchmark::State& state, const Estimator& estimator) {
+  mutate(state, make_primary_sample_mutations(estimator, 0.3),
+         Bootstrap(estimator, kSeed, 2048).start(0, 0));
+}
+
+/// All mutations of paths, or one alone with large steps (half of the steps each).
+void mutate_paths(benchmark::State& state, const Scene& scene, const Estimator& bdpt,
+                  const MutationWeights& weights) {
+  const TechniqueDistribution techniques(pilot_techniques(bdpt, kSeed, 1 << 14), kMaxDepth + 1);
+  mutate(state, make_path_mutations(weights, techniques, kMaxDepth + 1),
+         PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5));
 }
 
 /// A scene with its estimators; all live until the program ends, as registered benchmarks refer to
@@ -112,7 +128,13 @@ struct Subject {
     add("path", [this](benchmark::State& s) { estimate(s, *path); });
     add("light", [this](benchmark::State& s) { estimate(s, *light); });
     add("bdpt", [this](benchmark::State& s) { estimate(s, *bdpt); });
-    add("pssmlt", [this](benchmark::State& s) { mutate(s, *bdpt); });
+    add("pssmlt", [this](benchmark::State& s) { mutate_samples(s, *bdpt); });
+    add("mlt",
+        [this](benchmark::State& s) { mutate_paths(s, scene, *bdpt, default_mutation_weights()); });
+    for (const auto& [mutation, weight] : default_mutation_weights())
+      add(("mlt " + mutation).c_str(), [this, mutation = mutation](benchmark::State& s) {
+        mutate_paths(s, scene, *bdpt, {{mutation, 1.0}, {"large_step", 1.0}});
+      });
   }
 };
 

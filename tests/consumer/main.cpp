@@ -85,6 +85,7 @@ int main() {
   const fogbow::Scene scene(isothermal_cavity(), /*strict=*/true);
   bool good = agrees(scene, "path", 256);
   good = agrees(scene, "pssmlt", 256) && good;
+  good = agrees(scene, "mlt", 256) && good;
   fogbow::Image gradient(4, 2, {"R", "G", "B"});
   for (std::size_t i = 0; i < gradient.pixels.size(); ++i) gradient.pixels[i] = 0.125f * i;
   good = survives_a_file(gradient) && good;

@@ -99,7 +99,7 @@ class Bits(CliTest):
 
     def test_the_file_s_integrator(self):
         scene = scenes()["glowing_fog"]
-        for asked, used in (("volpath", "path"), ("ptracer", "light"), ("bdpt", "bdpt"), ("pssmlt", "pssmlt")):
+        for asked, used in (("volpath", "path"), ("ptracer", "light"), ("bdpt", "bdpt"), ("pssmlt", "pssmlt"), ("mlt", "mlt")):
             other = parse(text_of(scene))
             other.find("integrator").set("type", asked)
             file = self.scenes.write(asked, other)

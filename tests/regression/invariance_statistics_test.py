@@ -106,12 +106,12 @@ def add_neutral_changes(manifest, base):
     manifest.compare("black lamp as a black mirror", box, parse(black_mirror))
     manifest.compare("speck far away", box, with_objects(box, SPECK), replicates=REPLICATES)
     # Of rays from an infinite emitter only one in 10^4 meets the rest.
-    manifest.compare("speck far away under the sky", sky, with_objects(sky, SPECK), ("path", "bdpt", "pssmlt"),
+    manifest.compare("speck far away under the sky", sky, with_objects(sky, SPECK), ("path", "bdpt", "pssmlt", "mlt"),
                      REPLICATES, 2)
     manifest.compare("meshes for primitives", box, as_meshes(box), replicates=REPLICATES)
     manifest.compare("turned inside out", box, flipped(box), replicates=REPLICATES)
     manifest.compare("nothing around nothing", box, with_objects(box, EMPTY_CUBE))
-    manifest.compare("nothing around nothing in fog", fog, with_objects(fog, EMPTY_CUBE), ("path", "bdpt", "pssmlt"))
+    manifest.compare("nothing around nothing in fog", fog, with_objects(fog, EMPTY_CUBE), ("path", "bdpt", "pssmlt", "mlt"))
 
 
 def add_extremes_of_media(manifest, base):
@@ -132,11 +132,11 @@ def add_extremes_of_depth_and_film(manifest, base):
         manifest.agree(f"{name} of depth {depth}", with_value(scene, "default[@name='depth']", depth))
     fov = "sensor/float[@name='fov']"
     manifest.agree("field of view of 150 degrees", with_value(base["camera_in_fog"], fov, 150),
-                   ("path", "bdpt", "pssmlt"), 4)
-    manifest.agree("field of view of 0.01 degrees", with_value(glow, fov, 0.01), ("path", "bdpt", "pssmlt"))
+                   ("path", "bdpt", "pssmlt", "mlt"), 4)
+    manifest.agree("field of view of 0.01 degrees", with_value(glow, fov, 0.01), ("path", "bdpt", "pssmlt", "mlt"))
     for integrator in INTEGRATORS:
         # Chains are slower where they see but a part of the picture.
-        more, most = {"light": (2, 2), "pssmlt": (4, 12)}.get(integrator, (1, 1))
+        more, most = {"light": (2, 2), "pssmlt": (4, 12), "mlt": (4, 12)}.get(integrator, (1, 1))
         window, pixel = [5, 6, 9, 7], [1, 2, 1, 1]
         whole, few = manifest.side(glow, integrator, more), manifest.side(glow, integrator, 32 * most, size=[3, 3])
         one = manifest.side(glow, integrator, 256, size=[1, 1])

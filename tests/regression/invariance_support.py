@@ -8,9 +8,9 @@ import tempfile
 import invariance_scenes
 import transform_scene
 
-INTEGRATORS = ("path", "light", "bdpt", "pssmlt")
+INTEGRATORS = ("path", "light", "bdpt", "pssmlt", "mlt")
 # Scenes of 256 pixels need no more chains.
-OVERRIDES = {"pssmlt": {"luminance_samples": "2048", "chains": "2"}}
+OVERRIDES = dict.fromkeys(("pssmlt", "mlt"), {"luminance_samples": "2048", "chains": "2"})
 
 
 class SceneFolder:

@@ -34,8 +34,15 @@ class Outputs(CliTest):
         self.assertEqual((report["chains"], report["groups"]), (64, 8))
         self.assertEqual(report["mutations"], [
             {"name": "large step", "proposed": 1000, "accepted": 250, "acceptance": 0.25,
-             "rejected": {"NonFinite": 3, "Occluded": 500}},
-            {"name": "small step", "proposed": 0, "accepted": 0, "acceptance": None, "rejected": {}}])
+             "rejected": {"NonFinite": 3, "Occluded": 500}, "mean_squared_raster_jump": 0.0625, "time_share": 0.75,
+             "seconds_per_proposal": 1e-6,
+             "kinds": {"S-V": {"proposed": 400, "accepted": 100}, "V-S": {"proposed": 600, "accepted": 150},
+                       "never": {"proposed": 0, "accepted": 0}}},
+            {"name": "small step", "proposed": 0, "accepted": 0, "acceptance": None, "rejected": {},
+             "mean_squared_raster_jump": 0, "time_share": 0, "seconds_per_proposal": 0, "kinds": {}}])
+        self.assertEqual(report["b_k_c"], [
+            {"configuration": "SMS", "k": 3, "value": 0.19, "standard_error": 0.002},
+            {"configuration": "SS", "k": 2, "value": 0.05, "standard_error": 0.001}])
         self.assertEqual(report["diagnostics"], {"r_hat": 1.01})
         self.assertEqual(report["non_finite"], 0)
         speed = report["speed"]
@@ -112,7 +119,10 @@ class Outputs(CliTest):
         text = result.stdout.decode()
         for part in ("integrator pssmlt, 64 chains in 8 groups\n", "b = 0.2500 ± 0.0025\n", "0.0500 ± 0.0010", " 80.00%\n",
                      "  2 lengths more with 0.0006%\n",
-                     "large step       1k proposed, 25.00% accepted; refused: NonFinite 0.30%, Occluded 50.00%\n",
+                     "  SMS          0.1900 ± 0.0020            76.00%\n",
+                     "large step       1k proposed, 25.00% accepted, 75% of the time, rms jump 0.25; "
+                     "refused: NonFinite 0.30%, Occluded 50.00%\n",
+                     "    S-V                        400 proposed, 25.00% accepted\n",
                      " mutations/s, ", " rays/s\n", "(1.5 CPU-s)", "wrote run.exr, run.png, run.json\n"):
             self.assertIn(part, text)
         self.assertIn("info: the scene asks for volpath\n", result.stderr.decode())

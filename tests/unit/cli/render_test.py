@@ -19,7 +19,7 @@ class Render(CliTest):
 
     def test_every_integrator(self):
         brightness = {}
-        for name in ("path", "light", "bdpt", "pssmlt"):
+        for name in ("path", "light", "bdpt", "pssmlt", "mlt"):
             self.expect(0, "render", "scene.xml", "--integrator", name, "--spp", "64", "-t", "1")
             report = self.report()
             self.assertEqual(report["integrator"], name)
@@ -39,7 +39,7 @@ class Render(CliTest):
 
     def test_default_sampler_and_the_file_s_choice(self):
         result = self.expect(0, "render", "scene.xml", "--spp", "4")
-        self.assertEqual(self.report()["integrator"], "pssmlt")
+        self.assertEqual(self.report()["integrator"], "mlt")
         self.assertIn("volpath", result.stderr.decode())
         self.expect(0, "render", "scene.xml", "--spp", "4", "--integrator", "file")
         self.assertEqual(self.report()["integrator"], "path")

@@ -93,8 +93,16 @@ void fill_statistics(RenderResult& result, const RenderOptions& options) {
   result.cpu_seconds = 1.5;
   result.rays = 123456;
   result.lengths = {{2, 0.05, 0.001}, {3, 0.2, 0.002}, {4, 1e-6, 1e-7}, {9, 5e-7, 1e-7}};
-  result.mutations = {{"large step", 1000, 250, {{"Occluded", 500}, {"NonFinite", 3}}},
-                      {"small step", 0, 0, {}}};
+  result.classes = {{3, 0.19, 0.002, "SMS"}, {2, 0.05, 0.001, "SS"}};
+  result.mutations = {{"large step",
+                       1000,
+                       250,
+                       {{"Occluded", 500}, {"NonFinite", 3}},
+                       0.0625,
+                       0.75,
+                       1e-6,
+                       {{"S-V", 400, 100}, {"V-S", 600, 150}, {"never", 0, 0}}},
+                      {"small step", 0, 0, {}, 0, 0, 0, {}}};
   result.diagnostics = {{"r_hat", 1.01}};
   result.notes = {"the scene asks for volpath"};
 }

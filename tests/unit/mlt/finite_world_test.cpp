@@ -15,9 +15,9 @@ constexpr double kTarget[kNodes] = {0.4, 2.5, 1, 0.05, 3, 0.7, 1.2, 0.9, 5, 0.2,
 
 struct Node {
   int index = 0;
-  double f_star() const { return kTarget[index]; }
+  double log_f_star() const { return std::log(kTarget[index]); }
+  Vec2 raster() const { return {index, 0}; }
   void serialize(std::ostream& out) const { write_binary(out, index); }
-  static Node deserialize(std::istream& in) { return {read_binary<int>(in)}; }
 };
 
 /// Proposals that can be listed.
@@ -31,7 +31,8 @@ class Enumerable : public Mutation<Node> {
       u -= density(x.index, y.index);
       if (u < 0) break;
     }
-    return {std::log(density(y.index, x.index) / density(x.index, y.index)), std::nullopt};
+    return {std::log(density(y.index, x.index) / density(x.index, y.index)), std::nullopt,
+            std::log(density(x.index, y.index))};
   }
 };
 
@@ -63,6 +64,13 @@ MutationTable<Node> table() {
   return t;
 }
 
+/// π by its definition.
+double pi(const MutationTable<Node>& t, std::size_t mutation, int x) {
+  double total = 0;
+  for (const auto& m : t) total += m->selection_weight(Node{x});
+  return t[mutation]->selection_weight(Node{x}) / total;
+}
+
 /// Transition matrix by Chain's own acceptance.
 std::array<std::array<double, kNodes>, kNodes> transition_matrix(const MutationTable<Node>& t) {
   std::array<std::array<double, kNodes>, kNodes> P{};
@@ -73,10 +81,10 @@ std::array<std::array<double, kNodes>, kNodes> transition_matrix(const MutationT
         const double T = mutation.density(x, y);
         if (T == 0 || kTarget[x] == 0) continue;
         StepInfo info;
-        info.f_star_x = kTarget[x];
-        info.f_star_y = kTarget[y];
-        info.selection_x = selection_probability(t, m, Node{x});
-        info.selection_y = selection_probability(t, m, Node{y});
+        info.log_f_star_x = std::log(kTarget[x]);
+        info.log_f_star_y = std::log(kTarget[y]);
+        info.selection_x = pi(t, m, x);
+        info.selection_y = pi(t, m, y);
         info.proposal.log_ratio = std::log(mutation.density(y, x) / T);
         P[x][y] += info.selection_x * T * Chain<Node>::acceptance(info);
       }
@@ -107,8 +115,7 @@ TEST(FiniteWorld, ChainMovesAsItsTransitionMatrixSays) {
     std::array<std::uint64_t, kNodes> counts{};
     std::array<double, kNodes> expected{};
     for (int i = 0; i < kTrials; ++i) {
-      Chain<Node> chain{Node{x}};
-      chain.prepare(t.size());
+      Chain<Node> chain(Node{x}, t);
       Rng rng(testing::suite_seed(), RngDomain::Test, x, i);
       chain.step(t, rng, [](const Node&, double) {});
       ++counts[chain.state().index];
@@ -132,8 +139,7 @@ TEST(FiniteWorld, SplatsEstimateTheTarget) {
     double u = start.uniform() * b;
     int x = 0;
     while (x < kNodes - 1 && u >= kTarget[x]) u -= kTarget[x++];
-    Chain<Node> chain{Node{x}};
-    chain.prepare(t.size());
+    Chain<Node> chain(Node{x}, t);
     const auto splat = [&](const Node& node, double w) { weights[node.index][i] += w / kSteps; };
     for (int step = 0; step < kSteps; ++step) {
       Rng rng(testing::suite_seed(), RngDomain::Chain, i, step);

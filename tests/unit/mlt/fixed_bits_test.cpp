@@ -16,7 +16,7 @@ class FixedBits : public ::testing::TestWithParam<const char*> {
     o.integrator = GetParam();
     o.seed = 11;
     o.overrides = {{"max_depth", "6"}};
-    if (o.integrator == "pssmlt")
+    if (o.integrator == "pssmlt" || o.integrator == "mlt")
       o.overrides.insert(o.overrides.end(), {{"chains", "2"}, {"luminance_samples", "1024"}});
     return o;
   }
@@ -59,7 +59,7 @@ TEST_P(FixedBits, RunEndedByTimeEqualsTheRunOfItsCount) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Integrators, FixedBits,
-                         ::testing::Values("path", "light", "bdpt", "pssmlt"),
+                         ::testing::Values("path", "light", "bdpt", "pssmlt", "mlt"),
                          [](const auto& info) { return std::string(info.param); });
 
 }  // namespace

@@ -37,7 +37,7 @@ TEST(Render, PointLightsAreNotSeenByPinholes) {
   SceneDescription description = testing::make_test_scene("mirror-fog");
   description.emitters = {make_point_emitter(Vec3(0, 0.2, 0.5), RGB(5))};
   const Scene scene(std::move(description));
-  for (const char* integrator : {"path", "light", "bdpt", "pssmlt"}) {
+  for (const char* integrator : {"path", "light", "bdpt", "pssmlt", "mlt"}) {
     const RenderResult result = render(scene, options_of(integrator, 1));
     ASSERT_FALSE(result.lengths.empty());
     EXPECT_EQ(result.lengths.front().k, 3) << integrator;

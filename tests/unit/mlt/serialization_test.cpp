@@ -6,6 +6,8 @@
 
 #include "mlt/chain_ensemble.h"
 #include "mlt/mutations/primary_sample_mutations.h"
+#include "mlt/registry.h"
+#include "mlt/technique_distribution.h"
 #include "tests/helpers/test_scenes.h"
 
 namespace fogbow {
@@ -17,30 +19,34 @@ std::string bytes(const Film& film) {
   return out.str();
 }
 
-TEST(Serialization, InterruptedRunEndsOnTheSameBits) {
-  const Scene scene(testing::make_test_scene("glass-sphere-fog"));
-  const auto estimator = make_bdpt(scene, {.max_depth = 8});
-  const auto table = make_primary_sample_mutations(*estimator, 0.3);
-  const Bootstrap bootstrap(*estimator, 7, 256);
-  const auto start = [&](int group, std::uint64_t chain) { return bootstrap.start(group, chain); };
-  const auto steps = [](std::uint64_t n) { return [n](std::size_t) { return n; }; };
+/// What chains of one kind of State are made of.
+template <class State>
+struct Parts {
+  MutationTable<State> table;
+  typename ChainEnsemble<State>::Start start;
+  std::function<State(std::istream&)> read;
+};
 
-  ChainEnsemble<PrimarySample> straight(table, 7, 2, start);
+template <class State>
+void expect_same_bits_after_interruption(const Scene& scene, const Bootstrap& bootstrap,
+                                         const Parts<State>& parts) {
+  const auto steps = [](std::uint64_t n) { return [n](std::size_t) { return n; }; };
+  ChainEnsemble<State> straight(parts.table, 7, 2, parts.start);
   Film straight_film(scene.film(), -36);
   straight.run(steps(200), straight_film);
   straight.finish(straight_film);
 
   std::stringstream saved;
   {
-    ChainEnsemble<PrimarySample> first(table, 7, 2, start);
+    ChainEnsemble<State> first(parts.table, 7, 2, parts.start);
     Film film(scene.film(), -36);
     first.run(steps(90), film);
     first.serialize(saved);
     film.serialize(saved);
     bootstrap.normalization().serialize(saved);
   }
-  ChainEnsemble<PrimarySample> second(table, 7, 2, start);
-  second.deserialize(saved);
+  ChainEnsemble<State> second(parts.table, 7, 2, parts.start);
+  second.deserialize(saved, parts.read);
   Film film = Film::deserialize(saved, scene.film());
   const Normalization normalization = Normalization::deserialize(saved);
   second.run(steps(200), film);
@@ -52,7 +58,30 @@ TEST(Serialization, InterruptedRunEndsOnTheSameBits) {
   for (std::size_t i = 0; i < straight.size(); ++i) {
     EXPECT_EQ(second.record(i).independent_f_star, straight.record(i).independent_f_star);
     EXPECT_EQ(second.record(i).length_share, straight.record(i).length_share);
+    std::map<PathClass, double> a, b;
+    second.record(i).classes.add_to(a);
+    straight.record(i).classes.add_to(b);
+    EXPECT_EQ(a, b);
   }
+}
+
+TEST(Serialization, InterruptedRunEndsOnTheSameBits) {
+  const Scene scene(testing::make_test_scene("glass-sphere-fog"));
+  const auto estimator = make_bdpt(scene, {.max_depth = 8});
+  const Bootstrap bootstrap(*estimator, 7, 256);
+  expect_same_bits_after_interruption<PrimarySample>(
+      scene, bootstrap,
+      {make_primary_sample_mutations(*estimator, 0.3),
+       [&](int group, std::uint64_t chain) { return bootstrap.start(group, chain); },
+       PrimarySample::deserialize});
+  const TechniqueDistribution techniques({}, 9);
+  expect_same_bits_after_interruption<PathSample>(
+      scene, bootstrap,
+      {make_path_mutations(default_mutation_weights(), techniques, 9),
+       [&](int group, std::uint64_t chain) {
+         return PathSample::choose(scene, 9, bootstrap.start(group, chain), 0.5);
+       },
+       [&](std::istream& in) { return PathSample::deserialize(in, scene, 9); }});
 }
 
 TEST(Serialization, TruncatedStateIsAnError) {
@@ -65,6 +94,13 @@ TEST(Serialization, TruncatedStateIsAnError) {
   for (std::size_t length = 0; length < all.size(); length += 7) {
     std::istringstream in(all.substr(0, length));
     EXPECT_THROW(PrimarySample::deserialize(in), Error);
+  }
+  std::ostringstream path_out;
+  PathSample::choose(scene, 5, bootstrap.start(0, 0), 0.5).serialize(path_out);
+  const std::string path = path_out.str();
+  for (std::size_t length = 0; length < path.size(); length += 7) {
+    std::istringstream in(path.substr(0, length));
+    EXPECT_THROW(PathSample::deserialize(in, scene, 5), Error);
   }
 }
 

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/path/specular_chain.h"
+
 #include <gtest/gtest.h>
 
 #include "core/estimators/sampling.h"

@@ -8,6 +8,7 @@
 #include "core/estimators/sampling.h"
 #include "core/path/connection.h"
 #include "core/path/path.h"
+#include "core/path/specular_chain.h"
 #include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
 

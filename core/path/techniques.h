@@ -1,0 +1,34 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <span>
+
+#include "core/path/measured_path.h"
+#include "core/util/rng.h"
+
+namespace fogbow {
+
+/// The vertices x[first] … x[end − 1] of a path, all that lies outside being given.
+struct Range {
+  int first, end;
+  int size() const { return end - first; }
+};
+
+/// Whether vertices below `split` can come from the light and the others from the eye: the two ends
+/// that are joined there must scatter smoothly; with split 0 the eye must be able to run into the
+/// light.
+bool joinable(const Scene& scene, const MeasuredPath& path, int split);
+
+/// Which of several infinite emitters an escaped eye subpath ends on, uniformly.
+void choose_infinite_emitter(const Scene& scene, Vertex& x, Rng& rng);
+
+/// log Σ_l weights[l] p_l: p_l is the density in μ with which l vertices of the range are sampled
+/// from the light's side and the rest from the eye's, roulette included. weights has size() + 1
+/// entries; −∞ where no l can sample the range. With the whole path as range, l = s. Eye subpaths
+/// choose_infinite_emitter().
+double log_range_density(const Scene& scene, const MeasuredPath& path, Range range,
+                         std::span<const double> weights);
+
+/// Whether any technique (s, t) can sample the path: Σ_s p_s > 0.
+bool reachable(const Scene& scene, const MeasuredPath& path);
+
+}  // namespace fogbow

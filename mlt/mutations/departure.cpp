@@ -1,0 +1,43 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/mutations/departure.h"
+
+#include "core/estimators/sampling.h"
+
+namespace fogbow {
+
+namespace {
+
+constexpr StepSizes kOffsets{1e-4, 0.3};  ///< of parallel light, in radii of the scene
+
+/// Between a tenth of a pixel and a tenth of the picture's size, in pixels.
+std::optional<Vec3> step_on_film(const PathSample& x, Rng& rng) {
+  const auto [width, height] = rendered_size(x.scene().film());
+  const double size = std::sqrt(static_cast<double>(width) * height);
+  const StepSizes pixels{0.1, std::fmax(0.1 * size, 1.0)};
+  const Vec2 raster = x.raster() + planar_step(pixels, rng) / Vec2(width, height);
+  if (!(raster.x >= 0 && raster.x < 1 && raster.y >= 0 && raster.y < 1)) return std::nullopt;
+  const MeasuredPath& path = x.path();
+  return x.scene().sensor().sample_direction(path[path.last()].position(), raster).w;
+}
+
+}  // namespace
+
+std::optional<Vec3> perturb_departure(const PathSample& x, const Segment& segment,
+                                      const StepSizes& angles, Rng& rng) {
+  const MeasuredPath& path = x.path();
+  if (segment.anchor == path.last()) return step_on_film(x, rng);
+  const Vec3 w = departure(path, segment);
+  if (!path[segment.anchor].infinite()) return perturb_direction(w, angles, rng);
+  const Vec2 step = x.scene().radius() * planar_step(kOffsets, rng);
+  const Frame across(w);
+  return step.x * across.s + step.y * across.t;
+}
+
+double departure_density(const Scene& scene, const MeasuredPath& x, const Segment& segment) {
+  const double density = segment_density(scene, x, segment);
+  const int i = segment.anchor;
+  if (i != x.last()) return density;
+  return density * scene.sensor().pdf_sigma(x[i].position(), x.to_light(i));
+}
+
+}  // namespace fogbow

@@ -1,0 +1,82 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/manifold/walk.h"
+#include "mlt/mutations/departure.h"
+#include "mlt/mutations/path_mutations.h"
+
+namespace fogbow {
+
+namespace {
+
+/// From the anchor to the vertex that moves, and the chain by which it is joined to one that stays
+/// (anchor there, as walks start from it).
+struct Move {
+  Segment traced, walked;
+};
+
+/// Calls visit(Move) for every way to move a vertex in front of a specular chain.
+template <class Visit>
+void for_each_move(const MeasuredPath& x, Visit&& visit) {
+  for (int i = 0; i < x.size(); ++i) {
+    if (x[i].degenerate) continue;
+    for (const Side toward : {Side::Light, Side::Eye}) {
+      const auto traced = segment_from(x, i, toward);
+      if (!traced) continue;
+      const auto beyond = segment_from(x, traced->end, toward);
+      if (!beyond || beyond->length() < 2 || x[beyond->end].infinite()) continue;
+      const Side back = toward == Side::Light ? Side::Eye : Side::Light;
+      visit(Move{*traced, {beyond->end, traced->end, back}});
+    }
+  }
+}
+
+int count(const MeasuredPath& x) {
+  int n = 0;
+  for_each_move(x, [&](const Move&) { ++n; });
+  return n;
+}
+
+class Manifold final : public Mutation<PathSample> {
+ public:
+  explicit Manifold(double weight) : weight_(weight) {}
+  const char* name() const override { return "manifold"; }
+  double selection_weight(const PathSample& x) const override {
+    return count(x.path()) > 0 ? weight_ : 0.0;
+  }
+
+  Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
+    const Scene& scene = x.scene();
+    MeasuredPath& path = y.path();
+    const int chosen = static_cast<int>(rng.uniform() * count(x.path()));
+    Move move{};
+    int n = 0;
+    for_each_move(x.path(), [&](const Move& m) {
+      if (n++ == chosen) move = m;
+    });
+    y = x;
+    const auto w = perturb_departure(x, move.traced, kAngles, rng);
+    if (!w) return refuse(Rejection::OffFilm);
+    if (const auto why = retrace(scene, path, move.traced, *w)) return refuse(*why);
+    if (!walk(scene, path, move.walked)) return refuse(Rejection::WalkDiverged);
+    const auto [first, last] = std::minmax(move.traced.anchor, move.walked.anchor);
+    if (const auto why = complete(y, first, last, last_edge(move.walked))) return refuse(*why);
+    if (!returns(scene, x.path(), path, move.walked)) return refuse(Rejection::NotReversible);
+
+    // T of the traced part alone; f of the walked part is the reduced one [JakobMarschner2012].
+    const double traced = departure_density(scene, x.path(), move.traced) /
+                          departure_density(scene, path, move.traced);
+    return {std::log(traced) + log_reduction(scene, path, move.walked) -
+                log_reduction(scene, x.path(), move.walked),
+            std::nullopt};
+  }
+
+ private:
+  static constexpr StepSizes kAngles{1e-4, 0.1};
+
+  double weight_;
+};
+
+}  // namespace
+
+PathMutation make_manifold(double weight) { return std::make_unique<Manifold>(weight); }
+
+}  // namespace fogbow

@@ -1,0 +1,46 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <iosfwd>
+#include <span>
+
+#include "core/estimators/estimator.h"
+#include "core/path/measured_path.h"
+#include "mlt/mutation.h"
+#include "mlt/primary_sample.h"
+
+namespace fogbow {
+
+/// A path as the state of a chain; its target is the luminance of f.
+class PathSample {
+ public:
+  /// To be written; room for `max_vertices`.
+  PathSample(const Scene& scene, int max_vertices) : scene_(&scene) { path_.reserve(max_vertices); }
+
+  /// One of the paths that a sample of BDPT holds, in proportion to its weighted luminance.
+  static PathSample choose(const Scene& scene, int max_vertices, const PrimarySample& sample,
+                           double u);
+
+  const Scene& scene() const { return *scene_; }
+  MeasuredPath& path() { return path_; }
+  const MeasuredPath& path() const { return path_; }
+
+  /// The path of technique (s, t) over two subpaths, whose ends are joined here.
+  std::optional<Rejection> assemble(const Subpath& light, int s, const Subpath& eye, int t);
+  /// When every factor of path() is known: f, f* and the raster position; false off the film.
+  bool settle();
+  double log_f_star() const { return log_f_star_; }
+  const Vec2& raster() const { return path_.raster(); }
+  /// One, of luminance f* but for a power of two.
+  std::span<const Contribution> contributions() const { return {&contribution_, 1}; }
+
+  void serialize(std::ostream& out) const;
+  static PathSample deserialize(std::istream& in, const Scene& scene, int max_vertices);
+
+ private:
+  const Scene* scene_;
+  MeasuredPath path_;
+  Contribution contribution_{};
+  double log_f_star_ = -std::numeric_limits<double>::infinity();
+};
+
+}  // namespace fogbow

@@ -1,0 +1,42 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#pragma once
+#include <functional>
+#include <memory>
+#include <string>
+#include <vector>
+
+#include "mlt/path_sample.h"
+#include "mlt/registry.h"
+#include "mlt/technique_distribution.h"
+
+namespace fogbow::testing {
+
+/// Paths distributed like f*, drawn by BDPT: every sample is split into as many equal parts as its
+/// luminance asks for, so that all paths weigh the same. Parts of one sample stay together, for
+/// they are not independent.
+class PathPopulation {
+ public:
+  PathPopulation(const Scene& scene, int max_depth, std::uint64_t seed);
+
+  int max_vertices() const { return max_depth_ + 1; }
+  const TechniqueDistribution& techniques() const { return techniques_; }
+  /// One BDPT sample's paths, on average `mean_parts` of them.
+  void draw(std::uint64_t sample, double mean_parts, std::vector<PathSample>& parts) const;
+
+ private:
+  const Scene& scene_;
+  int max_depth_;
+  std::uint64_t seed_;
+  std::unique_ptr<Estimator> bdpt_;
+  double mean_f_star_;
+  TechniqueDistribution techniques_;
+};
+
+/// Numbers that tell paths apart: class, raster position, lengths, places, angles.
+struct Feature {
+  std::string name;
+  std::function<double(const MeasuredPath&)> value;
+};
+std::vector<Feature> path_features(const Scene& scene);
+
+}  // namespace fogbow::testing
