@@ -81,8 +81,8 @@ class Selection {
   double total_ = 0;
 };
 
-/// A Metropolis–Hastings chain with target f*. A State offers log_f_star(), raster() and
-/// serialize(out).
+/// A Metropolis–Hastings chain with target f*. A State offers log_f_star(), raster(), serialize(out)
+/// and selection_key(): states of one key that is not 0 have the same selection weights.
 template <class State>
 class Chain {
  public:
@@ -111,10 +111,11 @@ class Chain {
       else if (!std::isfinite(info.log_f_star_y) || !std::isfinite(info.proposal.log_ratio))
         info.proposal.rejection = Rejection::NonFinite;
     }
+    const bool same_selection = x_.selection_key() != 0 && x_.selection_key() == y_.selection_key();
     if (!info.proposal.rejection) {
-      selection_y_.evaluate(table, y_);
+      if (!same_selection) selection_y_.evaluate(table, y_);
       info.selection_x = selection_x_.probability(info.mutation);
-      info.selection_y = selection_y_.probability(info.mutation);
+      info.selection_y = (same_selection ? selection_x_ : selection_y_).probability(info.mutation);
       info.a = acceptance(info);
     }
     info.accepted = rng.uniform() < info.a;
@@ -124,7 +125,7 @@ class Chain {
     if (info.accepted) {
       leave(splat);
       std::swap(x_, y_);
-      std::swap(selection_x_, selection_y_);
+      if (!same_selection) std::swap(selection_x_, selection_y_);
       weight_ = info.a;
     } else if (info.a > 0) {
       splat(std::as_const(y_), info.a);

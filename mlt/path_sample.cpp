@@ -27,7 +27,22 @@ bool PathSample::settle() {
   contribution_ = {path_.raster(), f.mantissa(), path_.size(), 0, 0};
   log_f_star_ =
       log(ScaledProduct<double>(luminance(f.mantissa()))) + f.exponent() * std::numbers::ln2;
+  selection_key_ = key();
   return seen;
+}
+
+std::uint64_t PathSample::key() const {
+  constexpr int kBits = 16;  // a vertex or edge each
+  if (path_.size() > kBits) return 0;
+  std::uint64_t degenerate = 0, in_medium = 0, attenuated = 0;
+  for (int i = 0; i < path_.size(); ++i) {
+    degenerate |= std::uint64_t{path_[i].degenerate} << i;
+    in_medium |= std::uint64_t{path_[i].in_medium()} << i;
+    if (i < path_.last()) attenuated |= std::uint64_t{path_.sees_medium(i)} << i;
+  }
+  const auto ends = static_cast<std::uint64_t>(path_.size()) |
+                    static_cast<std::uint64_t>(path_[0].kind) << 8;
+  return ends << 3 * kBits | attenuated << 2 * kBits | in_medium << kBits | degenerate;
 }
 
 std::optional<Rejection> PathSample::assemble(const Subpath& light, int s, const Subpath& eye,
@@ -61,6 +76,7 @@ void PathSample::serialize(std::ostream& out) const {
   path_.serialize(out, *scene_);
   write_binary(out, contribution_);
   write_binary(out, log_f_star_);
+  write_binary(out, selection_key_);
 }
 
 PathSample PathSample::deserialize(std::istream& in, const Scene& scene, int max_vertices) {
@@ -69,6 +85,7 @@ PathSample PathSample::deserialize(std::istream& in, const Scene& scene, int max
   x.path_.reserve(max_vertices);
   x.contribution_ = read_binary<Contribution>(in);
   x.log_f_star_ = read_binary<double>(in);
+  x.selection_key_ = read_binary<std::uint64_t>(in);
   return x;
 }
 

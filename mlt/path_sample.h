@@ -30,6 +30,8 @@ class PathSample {
   bool settle();
   double log_f_star() const { return log_f_star_; }
   const Vec2& raster() const { return path_.raster(); }
+  /// k, the kinds of vertices and which edges lead through sampled media; 0 for long paths.
+  std::uint64_t selection_key() const { return selection_key_; }
   /// One, of luminance f* but for a power of two.
   std::span<const Contribution> contributions() const { return {&contribution_, 1}; }
 
@@ -37,9 +39,12 @@ class PathSample {
   static PathSample deserialize(std::istream& in, const Scene& scene, int max_vertices);
 
  private:
+  std::uint64_t key() const;
+
   const Scene* scene_;
   MeasuredPath path_;
   Contribution contribution_{};
+  std::uint64_t selection_key_ = 0;
   double log_f_star_ = -std::numeric_limits<double>::infinity();
 };
 

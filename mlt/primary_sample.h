@@ -17,6 +17,7 @@ class PrimarySample {
   /// Luminance of all contributions together.
   double f_star() const { return f_star_; }
   double log_f_star() const { return std::log(f_star_); }
+  std::uint64_t selection_key() const { return 1; }
   /// Of the eye's subpath.
   Vec2 raster() const { return eye_.size() < 2 ? Vec2(0) : Vec2(eye_[0], eye_[1]); }
   /// The subpaths that the contributions are made of.

@@ -27,6 +27,11 @@ class MeasuredPath {
   /// for infinite lights).
   const Scattering& scattering(int i) const { return scattering_[i]; }
 
+  /// Whether edge(i) leads through a medium in which vertices can lie.
+  bool sees_medium(int i) const {
+    const RGB& tau_q = edges_[i].tau_q;
+    return tau_q.x < 1 || tau_q.y < 1 || tau_q.z < 1;
+  }
   /// Direction from x[i] to x[i ± 1].
   Vec3 to_light(int i) const { return -edges_[i - 1].w; }
   Vec3 to_eye(int i) const { return edges_[i].w; }

@@ -37,7 +37,7 @@ class Caustic final : public Mutation<PathSample> {
   }
 
  private:
-  static constexpr StepSizes kAngles{1e-4, 0.3};
+  static constexpr StepSizes kAngles{1e-3, 1};
 
   double weight_;
 };

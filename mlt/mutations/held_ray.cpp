@@ -5,7 +5,7 @@ namespace fogbow {
 
 namespace {
 
-constexpr double kLeastStep = 1e-3;
+constexpr double kLeastStep = 0.02;
 
 /// Away from what is held.
 Edge held_edge(const MeasuredPath& x, const HeldVertex& h) {

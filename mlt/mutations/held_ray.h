@@ -28,8 +28,7 @@ void for_each_held_vertex(const MeasuredPath& x, bool through_specular, Visit&& 
     for (const Side held : {Side::Light, Side::Eye}) {
       const HeldVertex h{i, held};
       if (x[h.beyond()].degenerate && !through_specular) continue;
-      const RGB& tau_q = x.edge(h.held_edge()).tau_q;
-      if (x[i].in_medium() || tau_q.x < 1 || tau_q.y < 1 || tau_q.z < 1) visit(h);
+      if (x[i].in_medium() || x.sees_medium(h.held_edge())) visit(h);
     }
   }
 }

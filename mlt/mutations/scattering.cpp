@@ -43,7 +43,7 @@ class ScatteringPerturbation final : public Mutation<PathSample> {
   }
 
  private:
-  static constexpr StepSizes kAngles{1e-3, 1};
+  static constexpr StepSizes kAngles{0.02, 3};
 
   static int count(const PathSample& x) {
     int n = 0;

@@ -123,11 +123,7 @@ TEST_P(Invariance, ChainsStayInTheTargetLaw) {
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Invariance, ::testing::ValuesIn(test_scenes()),
-                         [](const auto& info) {
-                           std::string name = info.param.name;
-                           std::ranges::replace(name, '-', '_');
-                           return name;
-                         });
+                         [](const auto& info) { return test_name(info.param); });
 
 }  // namespace
 }  // namespace fogbow::testing

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/laws/path_population.h"
 
+#include <algorithm>
+
 #include "core/math/random.h"
 #include "mlt/normalization.h"
 
@@ -41,6 +43,12 @@ void PathPopulation::draw(std::uint64_t sample, double mean_parts,
   const int n = static_cast<int>(expected + rng.uniform());
   for (int i = 0; i < n; ++i)
     parts.push_back(PathSample::choose(scene_, max_vertices(), x, (i + rng.uniform()) / n));
+}
+
+std::string test_name(const TestScene& scene) {
+  std::string name = scene.name;
+  std::ranges::replace(name, '-', '_');
+  return name;
 }
 
 std::vector<Feature> path_features(const Scene& scene) {

@@ -8,6 +8,7 @@
 #include "mlt/path_sample.h"
 #include "mlt/registry.h"
 #include "mlt/technique_distribution.h"
+#include "tests/helpers/test_scenes.h"
 
 namespace fogbow::testing {
 
@@ -20,6 +21,8 @@ class PathPopulation {
 
   int max_vertices() const { return max_depth_ + 1; }
   const TechniqueDistribution& techniques() const { return techniques_; }
+  /// b, as the pilot knows it: what one part stands for where mean_parts is one.
+  double mean_f_star() const { return mean_f_star_; }
   /// One BDPT sample's paths, on average `mean_parts` of them.
   void draw(std::uint64_t sample, double mean_parts, std::vector<PathSample>& parts) const;
 
@@ -38,5 +41,8 @@ struct Feature {
   std::function<double(const MeasuredPath&)> value;
 };
 std::vector<Feature> path_features(const Scene& scene);
+
+/// As GoogleTest wants it.
+std::string test_name(const TestScene& scene);
 
 }  // namespace fogbow::testing

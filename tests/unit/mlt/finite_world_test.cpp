@@ -17,6 +17,7 @@ struct Node {
   int index = 0;
   double log_f_star() const { return std::log(kTarget[index]); }
   Vec2 raster() const { return {index, 0}; }
+  std::uint64_t selection_key() const { return index % 3 + (index < 6 ? 1 : 4); }
   void serialize(std::ostream& out) const { write_binary(out, index); }
 };
 
