@@ -84,10 +84,9 @@ class ChainEnsemble {
   StepInfo step(std::size_t i, Film& film) {
     Chain<State>& chain = *chains_[i];
     Rng rng(seed_, RngDomain::Chain, i, chain.steps());
-    Rng offsets(seed_, RngDomain::Film, i, chain.steps());
     const bool timed = chain.steps() % kTimedStep == 0;
     const auto start = timed ? Clock::now() : Clock::time_point();
-    const StepInfo info = chain.step(table_, rng, splatter(i, offsets, film));
+    const StepInfo info = chain.step(table_, rng, splatter(i, rng, film));
     if (timed)
       chain.time(info.mutation, std::chrono::duration<double>(Clock::now() - start).count());
     if (table_[info.mutation]->independent()) {

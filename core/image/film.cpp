@@ -102,12 +102,9 @@ float to_float(double value) {
 
 Film::Film(const FilmSettings& settings, int unit_exponent)
     : settings_(complete(settings)),
-      unit_exponent_(unit_exponent),
       column_mass_(masses(*settings_.filter, settings_.crop_width)),
       row_mass_(masses(*settings_.filter, settings_.crop_height)) {
-  if (std::abs(unit_exponent) > kMaxUnitExponent)
-    throw Error(ErrorKind::Usage,
-                "film unit 2^" + std::to_string(unit_exponent) + " is beyond double precision");
+  set_unit(unit_exponent);
   const std::size_t pixels = pixel_count(settings_);
   try {
     rgb_ = std::vector<std::atomic<std::int64_t>>(3 * pixels);
@@ -117,9 +114,18 @@ Film::Film(const FilmSettings& settings, int unit_exponent)
   }
 }
 
+void Film::set_unit(int exponent) {
+  if (std::abs(exponent) > kMaxUnitExponent)
+    throw Error(ErrorKind::Usage,
+                "film unit 2^" + std::to_string(exponent) + " is beyond double precision");
+  unit_exponent_ = exponent;
+  counts_per_unit_ = std::ldexp(1.0, -exponent);
+}
+
 Film::Film(Film&& other) noexcept
     : settings_(std::move(other.settings_)),
       unit_exponent_(other.unit_exponent_),
+      counts_per_unit_(other.counts_per_unit_),
       column_mass_(std::move(other.column_mass_)),
       row_mass_(std::move(other.row_mass_)),
       rgb_(std::move(other.rgb_)),
@@ -129,6 +135,7 @@ Film::Film(Film&& other) noexcept
 Film& Film::operator=(Film&& other) noexcept {
   settings_ = std::move(other.settings_);
   unit_exponent_ = other.unit_exponent_;
+  counts_per_unit_ = other.counts_per_unit_;
   column_mass_ = std::move(other.column_mass_);
   row_mass_ = std::move(other.row_mass_);
   rgb_ = std::move(other.rgb_);
@@ -139,7 +146,7 @@ Film& Film::operator=(Film&& other) noexcept {
 
 /// Nearest count; a single splat of 2^62 counts or more is an overflow too.
 std::int64_t Film::to_count(double value) const {
-  const double counts = std::ldexp(value, -unit_exponent_);
+  const double counts = value * counts_per_unit_;
   if (!(std::fabs(counts) < 0x1p62))
     throw Error(ErrorKind::Numerical,
                 "film overflow: a splat of " + std::to_string(counts) + " counts");

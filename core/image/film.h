@@ -62,11 +62,13 @@ class Film {
   Film& operator=(Film&&) noexcept;
 
  private:
+  void set_unit(int exponent);
   std::int64_t to_count(double value) const;
   void add_error_layers(Image& image, double scale, const std::vector<double>& group_scale) const;
 
   FilmSettings settings_;
   int unit_exponent_;
+  double counts_per_unit_;
   std::vector<double> column_mass_,
       row_mass_;  ///< Z_j = column × row: the part of a pixel's filter on the crop window
   std::vector<std::atomic<std::int64_t>> rgb_;    ///< 3 a pixel

@@ -128,7 +128,7 @@ Film Film::deserialize(std::istream& in, const FilmSettings& settings) {
   reader.expect_text(film.settings_.filter->name(), "reconstruction filter");
   const auto unit = static_cast<std::int64_t>(reader.integer());
   if (unit < -kMaxUnitExponent || unit > kMaxUnitExponent) broken("the unit is out of range");
-  film.unit_exponent_ = static_cast<int>(unit);
+  film.set_unit(static_cast<int>(unit));
   film.refused_ = reader.integer();
   for (auto& count : film.rgb_) count = static_cast<std::int64_t>(reader.integer());
   for (auto& count : film.group_) count = static_cast<std::int64_t>(reader.integer());

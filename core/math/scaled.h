@@ -31,7 +31,7 @@ class ScaledProduct {
 
  private:
   static double size(double v) { return v; }
-  static double size(const RGB& v) { return max_component(v); }
+  static double size(const RGB& v) { return v.x + v.y + v.z; }
   /// Zero and what is not finite stay as they are.
   void settle() {
     constexpr double kLarge = 0x1p+200, kSmall = 0x1p-200;

@@ -77,8 +77,7 @@ void MeasuredPath::measure_edge(const Scene& scene, int i) {
 bool MeasuredPath::evaluate(const Scene& scene) {
   f_ = ScaledProduct<RGB>(scattering_[0].f_hat);
   for (int i = 0; i < last(); ++i) {
-    f_ *= transport_[i];
-    f_ *= scattering_[i + 1].f_hat;
+    f_ *= transport_[i] * scattering_[i + 1].f_hat;
   }
   const auto seen = scene.sensor().raster(vertices_.back().position(), to_light(last()));
   if (seen) raster_ = *seen;

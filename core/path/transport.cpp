@@ -50,10 +50,16 @@ class RayCounter {
 
 thread_local RayCounter ray_count;
 
+/// e^−depth; gray media are worth one exponential instead of three.
+RGB transmittance(const RGB& depth) {
+  if (depth.x == depth.y && depth.y == depth.z) return RGB(std::exp(-depth.x));
+  return glm::exp(-depth);
+}
+
 /// Multiplies an edge's transmittance by that of one medium over [t0, t1].
 void attenuate(Edge& edge, const Medium* medium, const Ray& ray, double t0, double t1) {
   if (!medium) return;
-  const RGB tau = glm::exp(-medium->optical_depth(ray, t0, t1));
+  const RGB tau = transmittance(medium->optical_depth(ray, t0, t1));
   edge.tau *= tau;
   if (is_sampled(medium)) edge.tau_q *= tau;
 }
@@ -224,7 +230,7 @@ const RayProfile::Section& RayProfile::section_at(double t) const {
 RGB RayProfile::tau_q(double t) const {
   const Section& s = section_at(t);
   if (!is_sampled(s.medium)) return s.tau_q;
-  return s.tau_q * glm::exp(-s.medium->optical_depth(ray_, s.begin, std::fmin(t, s.end)));
+  return s.tau_q * transmittance(s.medium->optical_depth(ray_, s.begin, std::fmin(t, s.end)));
 }
 
 std::optional<double> RayProfile::distance(int channel, double u) const {

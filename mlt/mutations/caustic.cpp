@@ -6,6 +6,8 @@ namespace fogbow {
 
 namespace {
 
+const StepSizes kAngles(1e-3, 1);
+
 /// The segment that brings light to the vertex next to the sensor.
 std::optional<Segment> last_segment(const Scene& scene, const MeasuredPath& x) {
   const int end = x.last() - 1;
@@ -37,8 +39,6 @@ class Caustic final : public Mutation<PathSample> {
   }
 
  private:
-  static constexpr StepSizes kAngles{1e-3, 1};
-
   double weight_;
 };
 

@@ -7,13 +7,13 @@ namespace fogbow {
 
 namespace {
 
-constexpr StepSizes kOffsets{1e-4, 0.3};  ///< of parallel light, in radii of the scene
+const StepSizes kOffsets(1e-4, 0.3);  ///< of parallel light, in radii of the scene
 
 /// Between a tenth of a pixel and a tenth of the picture's size, in pixels.
 std::optional<Vec3> step_on_film(const PathSample& x, Rng& rng) {
   const auto [width, height] = rendered_size(x.scene().film());
   const double size = std::sqrt(static_cast<double>(width) * height);
-  const StepSizes pixels{0.5, std::fmax(0.5 * size, 1.0)};
+  const StepSizes pixels(0.5, std::fmax(0.5 * size, 1.0));
   const Vec2 raster = x.raster() + planar_step(pixels, rng) / Vec2(width, height);
   if (!(raster.x >= 0 && raster.x < 1 && raster.y >= 0 && raster.y < 1)) return std::nullopt;
   const MeasuredPath& path = x.path();
@@ -36,8 +36,7 @@ std::optional<Vec3> perturb_departure(const PathSample& x, const Segment& segmen
 double departure_density(const Scene& scene, const MeasuredPath& x, const Segment& segment) {
   const double density = segment_density(scene, x, segment);
   const int i = segment.anchor;
-  if (i != x.last()) return density;
-  return density * scene.sensor().pdf_sigma(x[i].position(), x.to_light(i));
+  return i == x.last() ? density * x.scattering(i).pdf_to_light : density;
 }
 
 }  // namespace fogbow

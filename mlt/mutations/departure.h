@@ -11,7 +11,8 @@ namespace fogbow {
 std::optional<Vec3> perturb_departure(const PathSample& x, const Segment& segment,
                                       const StepSizes& angles, Rng& rng);
 
-/// segment_density() with the measure in which perturb_departure() is symmetric.
+/// Of a measured path, segment_density() with the measure in which perturb_departure() is
+/// symmetric.
 double departure_density(const Scene& scene, const MeasuredPath& x, const Segment& segment);
 
 }  // namespace fogbow

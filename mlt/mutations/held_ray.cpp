@@ -5,7 +5,7 @@ namespace fogbow {
 
 namespace {
 
-constexpr double kLeastStep = 0.02;
+const StepSizes kSteps(0.02, 1);  ///< as parts of u_M
 
 /// Away from what is held.
 Edge held_edge(const MeasuredPath& x, const HeldVertex& h) {
@@ -64,7 +64,7 @@ LocalSteps::LocalSteps(const RayProfile& profile, int channel)
     : profile_(profile),
       channel_(channel),
       u_wall_(1 - profile.edge().tau_q[channel]),
-      sizes_{kLeastStep * u_wall_, u_wall_} {}
+      sizes_(kSteps.scaled(u_wall_)) {}
 
 double LocalSteps::du_dt(double t) const {
   return profile_.scatters_at(t)->sigma_t(profile_.point(t))[channel_] *

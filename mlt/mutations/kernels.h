@@ -8,18 +8,25 @@ namespace fogbow {
 
 /// Steps with density ∝ 1/r between two sizes (VeachGuibas1997, sec. 5.3): every order of magnitude
 /// is tried as often as another. All perturbations by them are symmetric.
-struct StepSizes {
-  double least, most;
+class StepSizes {
+ public:
+  StepSizes(double least, double most)
+      : least_(least), most_(most), range_(std::log(most / least)) {}
+  /// The same distribution in another unit.
+  StepSizes scaled(double unit) const { return {least_ * unit, most_ * unit, range_}; }
 
-  double sample(double u) const { return most * std::exp(-u * std::log(most / least)); }
-  double pdf(double r) const {
-    return r >= least && r <= most ? 1 / (r * std::log(most / least)) : 0.0;
-  }
+  double sample(double u) const { return most_ * std::exp(-u * range_); }
+  double pdf(double r) const { return r >= least_ && r <= most_ ? 1 / (r * range_) : 0.0; }
   /// P(step ≥ r).
   double at_least(double r) const {
-    if (r <= least) return 1;
-    return r >= most ? 0 : std::log(most / r) / std::log(most / least);
+    if (r <= least_) return 1;
+    return r >= most_ ? 0 : std::log(most_ / r) / range_;
   }
+
+ private:
+  StepSizes(double least, double most, double range) : least_(least), most_(most), range_(range) {}
+
+  double least_, most_, range_;
 };
 
 /// A step of this length in a uniform direction of the plane.

@@ -6,7 +6,7 @@ namespace fogbow {
 
 namespace {
 
-constexpr StepSizes kAngles{1e-4, 0.1};
+const StepSizes kAngles(1e-4, 0.1);
 
 /// The segment after `s` on the eye's subpath, from the sensor if there is none before.
 std::optional<Segment> next_segment(const MeasuredPath& x, const std::optional<Segment>& s) {
@@ -31,20 +31,28 @@ class EyePerturbation final : public Mutation<PathSample> {
     const Scene& scene = x.scene();
     MeasuredPath& path = y.path();
     y = x;
-    double ratio = 1;  // of densities, reverse over forward
     std::optional<Segment> s;
     do {
       s = next_segment(x.path(), s);
       const auto w = perturb_departure(x, *s, kAngles, rng);
       if (!w) return refuse(Rejection::OffFilm);
       if (const auto why = retrace(scene, path, *s, *w)) return refuse(*why);
-      ratio *= departure_density(scene, x.path(), *s) / departure_density(scene, path, *s);
     } while (!movable(scene, x.path(), *s));
+    const int end = s->end;
     if (const auto why = complete_segment(y, *s, path.last())) return refuse(*why);
-    return {std::log(ratio), std::nullopt};
+    return {std::log(density(scene, x.path(), end) / density(scene, path, end)), std::nullopt};
   }
 
  private:
+  /// Of all segments up to the vertex `end`.
+  static double density(const Scene& scene, const MeasuredPath& x, int end) {
+    double product = 1;
+    for (auto s = next_segment(x, std::nullopt);; s = next_segment(x, s)) {
+      product *= departure_density(scene, x, *s);
+      if (s->end == end) return product;
+    }
+  }
+
   double weight_;
   bool several_;
 };

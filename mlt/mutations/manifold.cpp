@@ -7,6 +7,8 @@ namespace fogbow {
 
 namespace {
 
+const StepSizes kAngles(1e-4, 0.1);
+
 /// From the anchor to the vertex that moves, and the chain by which it is joined to one that stays
 /// (anchor there, as walks start from it).
 struct Move {
@@ -70,8 +72,6 @@ class Manifold final : public Mutation<PathSample> {
   }
 
  private:
-  static constexpr StepSizes kAngles{1e-4, 0.1};
-
   double weight_;
 };
 

@@ -6,6 +6,8 @@ namespace fogbow {
 
 namespace {
 
+const StepSizes kAngles(0.02, 3);
+
 /// Calls visit(segment) for the segments that leave medium vertices and can be moved.
 template <class Visit>
 void for_each_segment(const Scene& scene, const MeasuredPath& x, Visit&& visit) {
@@ -43,8 +45,6 @@ class ScatteringPerturbation final : public Mutation<PathSample> {
   }
 
  private:
-  static constexpr StepSizes kAngles{0.02, 3};
-
   static int count(const PathSample& x) {
     int n = 0;
     for_each_segment(x.scene(), x.path(), [&](const Segment&) { ++n; });
