@@ -37,8 +37,9 @@ class ScaledProduct {
     constexpr double kLarge = 0x1p+200, kSmall = 0x1p-200;
     const double s = size(mantissa_);
     if ((s >= kSmall && s <= kLarge) || !(s > 0) || std::isinf(s)) return;
-    const int e = std::ilogb(s);
-    mantissa_ *= std::ldexp(1.0, -e);
+    const int e = std::ilogb(s), half = e / 2;
+    mantissa_ *= std::ldexp(1.0, -half);  // 2^−e itself overflows where s is subnormal
+    mantissa_ *= std::ldexp(1.0, half - e);
     exponent_ += e;
   }
 
