@@ -22,8 +22,10 @@ bool HeldRay::trace(const Scene& scene, const MeasuredPath& x, const HeldVertex&
   t_ = edge.length;
   double near = 0, far = kInfinity;
   if (parallel_) {
-    start = beyond_scene(scene, start, x[held.vertex].position());
-    t_ = length(x[held.vertex].position() - start.position());
+    // The same start for every vertex on the ray: laws of the distance are asked from all of them.
+    const Vec3 at = x[held.vertex].position(), center = scene.bounds().center();
+    start = beyond_scene(scene, start, at + dot(center - at, edge.w) * edge.w);
+    t_ = length(at - start.position());
   } else if (start.kind == VertexKind::Sensor) {
     near = scene.sensor().near_distance(edge.w);
     far = scene.sensor().far_distance(edge.w);
