@@ -124,8 +124,8 @@ Sampling sample(const Scene& scene, const Estimator& estimator, bool classified,
   return result;
 }
 
-Sampling render_chains(const Scene& scene, int longest, int replicates, std::uint64_t mutations,
-                       std::uint64_t seed) {
+Sampling render_chains(const Scene& scene, const std::string& integrator, int longest,
+                       int replicates, std::uint64_t mutations, std::uint64_t seed) {
   // A short bootstrap's starts are biased as 1/samples, more than the errors here allow where the
   // light is in few paths.
   constexpr std::uint64_t kBootstrap = 1 << 15;
@@ -133,7 +133,7 @@ Sampling render_chains(const Scene& scene, int longest, int replicates, std::uin
   const auto [width, height] = rendered_size(scene.film());
   const double pixels = static_cast<double>(width) * height;
   RenderOptions options;
-  options.integrator = "pssmlt";
+  options.integrator = integrator;
   options.overrides = {
       {"max_depth", std::to_string(longest - 1)},
       {"chains", "8"},

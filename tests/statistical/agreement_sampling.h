@@ -67,9 +67,9 @@ class Replicates {
 using Sampling = std::vector<Replicates>;
 Sampling sample(const Scene& scene, const Estimator& estimator, bool classified, int longest,
                 int replicates, std::uint64_t samples, std::uint64_t seed);
-/// Independent renders of pssmlt, of so many mutations.
-Sampling render_chains(const Scene& scene, int longest, int replicates, std::uint64_t mutations,
-                       std::uint64_t seed);
+/// Independent renders of pssmlt or mlt, of so many mutations.
+Sampling render_chains(const Scene& scene, const std::string& integrator, int longest,
+                       int replicates, std::uint64_t mutations, std::uint64_t seed);
 
 /// Runs an independent pilot to learn how many samples `precision` takes at `level`, then those.
 using Sampler = std::function<Sampling(std::uint64_t samples, std::uint64_t seed)>;

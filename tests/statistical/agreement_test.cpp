@@ -1,5 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-// The four integrators on the scenes built in code: each is compared with bdpt on exactly the paths
+// The integrators on the scenes built in code: each is compared with bdpt on exactly the paths
 // that both can make (validation 2 and "Power" of the design).
 #include <gtest/gtest.h>
 
@@ -22,7 +22,7 @@ constexpr int kLongest = 7;      // vertices
 constexpr int kReplicates = 64;  // of independent samples
 constexpr int kRuns = 24;        // of chains
 /// An upper bound on the tests of this file together; counted below.
-constexpr int kTests = 1100, kTestsOfOneScene = 100;
+constexpr int kTests = 1400, kTestsOfOneScene = 130;
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 
 /// In the long suite what validation asks for. In the fast one as much as seconds allow: less
@@ -62,18 +62,22 @@ TEST_P(Agreement, EachIntegratorEqualsBdptOnWhatBothCanMake) {
   const Sampling bdpt = run(*make_bdpt(scene, settings), true, 10);
   const Sampling path = run(*make_path_tracer(scene, settings), false, 20);
   const Sampling light = run(*make_light_tracer(scene, settings), true, 30);
-  const Sampling chains = sample_until(
-      [&](std::uint64_t mutations, std::uint64_t s) {
-        return render_chains(scene, kLongest, kRuns, mutations, s);
-      },
-      8192, wanted, kLevel, seed + 40);
+  const auto chains = [&](const char* integrator, std::uint64_t stream) {
+    return sample_until(
+        [&](std::uint64_t mutations, std::uint64_t s) {
+          return render_chains(scene, integrator, kLongest, kRuns, mutations, s);
+        },
+        8192, wanted, kLevel, seed + stream);
+  };
 
   int tests = expect_agreement(name + ": bdpt, path", at(bdpt, Restriction::ByPath),
                                at(path, Restriction::All), wanted, kLevel);
   tests += expect_agreement(name + ": bdpt, light", at(bdpt, Restriction::ByLight),
                             at(light, Restriction::ByLight), wanted, kLevel);
   tests += expect_agreement(name + ": bdpt, pssmlt", at(bdpt, Restriction::All),
-                            at(chains, Restriction::All), wanted, kLevel);
+                            at(chains("pssmlt", 40), Restriction::All), wanted, kLevel);
+  tests += expect_agreement(name + ": bdpt, mlt", at(bdpt, Restriction::All),
+                            at(chains("mlt", 50), Restriction::All), wanted, kLevel);
   EXPECT_LE(tests, kTestsOfOneScene);
   const double all = at(bdpt, Restriction::All).mean().mean;
   std::printf("%-44s path can make %.1f%%, light %.1f%% (beyond the lens) of the light\n",

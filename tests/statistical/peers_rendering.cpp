@@ -84,11 +84,11 @@ Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_exc
   return tiles;
 }
 
-Tiles render_tiles_by_chains(const Scene& scene, int max_depth, int replicates,
-                             double mutations_per_pixel, std::uint64_t seed) {
+Tiles render_tiles_by_chains(const Scene& scene, const std::string& integrator, int max_depth,
+                             int replicates, double mutations_per_pixel, std::uint64_t seed) {
   Tiles tiles = empty_tiles(scene, replicates);
   RenderOptions options;
-  options.integrator = "pssmlt";
+  options.integrator = integrator;
   options.overrides = {{"max_depth", std::to_string(max_depth)}};
   options.samples_per_pixel = mutations_per_pixel;
   for (int r = 0; r < replicates; ++r) {

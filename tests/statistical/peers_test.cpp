@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // scenes/ against their references by Mitsuba 3, tile by tile (validation 8 of the design). In the
-// fast suite a few tiles of three scenes; in the long one all nine scenes, and pssmlt beside bdpt.
+// fast suite a few tiles of three scenes; in the long one all nine scenes, pssmlt and mlt beside bdpt.
 #include <gtest/gtest.h>
 
 #include <cstdio>
@@ -18,7 +18,7 @@ using namespace testing;
 
 constexpr int kMaxDepth = 64;  // as the references
 constexpr int kReplicates = 32;
-constexpr int kTests = 9 * 4 * 258;
+constexpr int kTests = 9 * 5 * 258;
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 constexpr double kPower = 0.99;
 
@@ -141,13 +141,15 @@ TEST_P(Peers, PicturesAgreeWithMitsuba) {
     expect_equal(peer.name + ": path, Mitsuba", by_path, theirs, tiles, ours, bias);
   }
   // Whatever the reference cannot tell, two of our own samplers must agree on.
-  const Tiles chains =
-      render_tiles_by_chains(scene, kMaxDepth, kReplicates / 2, rounds, suite_seed() + 90);
   const Tiles none{ours.across, {}, std::vector<double>(ours.count())};
-  expect_equal(
-      peer.name + ": pssmlt, bdpt", chains,
-      [&](const std::vector<std::size_t>& part) { return ours.estimate(part); }, all_tiles(ours),
-      none, bias);
+  for (const std::string integrator : {"pssmlt", "mlt"}) {
+    const Tiles chains = render_tiles_by_chains(scene, integrator, kMaxDepth, kReplicates / 2,
+                                                rounds, suite_seed() + 90);
+    expect_equal(
+        peer.name + ": " + integrator + ", bdpt", chains,
+        [&](const std::vector<std::size_t>& part) { return ours.estimate(part); }, all_tiles(ours),
+        none, bias);
+  }
 }
 
 INSTANTIATE_TEST_SUITE_P(Scenes, Peers, ::testing::ValuesIn(peers()), [](const auto& info) {
