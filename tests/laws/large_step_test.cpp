@@ -36,8 +36,8 @@ TEST_P(LargeStep, EstimatesWhatBdptEstimates) {
   const Scene scene(GetParam().make());
   const PathPopulation population(scene, kMaxDepth, suite_seed());
   const auto features = path_features(scene);
-  const auto table = make_path_mutations({{"large_step", 1}}, population.techniques(),
-                                         population.max_vertices());
+  const auto table =
+      make_path_mutations({{"large_step", 1}}, population.techniques(), population.max_vertices());
   std::vector<Moments> bdpt(features.size()), large(features.size());
   std::vector<PathSample> parts;
   PathSample y(scene, population.max_vertices());
@@ -61,11 +61,10 @@ TEST_P(LargeStep, EstimatesWhatBdptEstimates) {
       sidak(kSuiteFalseAlarm, static_cast<int>(test_scenes().size() * features.size()));
   for (std::size_t i = 0; i < features.size(); ++i) {
     if (std::min(bdpt[i].events, large[i].events) < kLeastEvents) continue;
-    const double z = (large[i].mean() - bdpt[i].mean()) /
-                     std::sqrt(large[i].variance() + bdpt[i].variance());
-    EXPECT_GT(p_value_normal(z), level)
-        << features[i].name << ": large steps " << large[i].mean() << ", BDPT " << bdpt[i].mean()
-        << ", z = " << z;
+    const double z =
+        (large[i].mean() - bdpt[i].mean()) / std::sqrt(large[i].variance() + bdpt[i].variance());
+    EXPECT_GT(p_value_normal(z), level) << features[i].name << ": large steps " << large[i].mean()
+                                        << ", BDPT " << bdpt[i].mean() << ", z = " << z;
   }
 }
 

@@ -2,6 +2,7 @@
 #include "tests/laws/path_population.h"
 
 #include <algorithm>
+#include <map>
 
 #include "core/math/random.h"
 #include "mlt/normalization.h"
@@ -43,6 +44,18 @@ void PathPopulation::draw(std::uint64_t sample, double mean_parts,
   const int n = static_cast<int>(expected + rng.uniform());
   for (int i = 0; i < n; ++i)
     parts.push_back(PathSample::choose(scene_, max_vertices(), x, (i + rng.uniform()) / n));
+}
+
+std::vector<PathSample> PathPopulation::of_every_configuration(std::uint64_t samples,
+                                                               int most) const {
+  std::map<std::uint64_t, int> seen;
+  std::vector<PathSample> chosen, parts;
+  for (std::uint64_t sample = 0; sample < samples; ++sample) {
+    draw(sample, 1, parts);
+    for (const PathSample& x : parts)
+      if (++seen[x.selection_key()] <= most) chosen.push_back(x);
+  }
+  return chosen;
 }
 
 std::string test_name(const TestScene& scene) {

@@ -25,6 +25,8 @@ class PathPopulation {
   double mean_f_star() const { return mean_f_star_; }
   /// One BDPT sample's paths, on average `mean_parts` of them.
   void draw(std::uint64_t sample, double mean_parts, std::vector<PathSample>& parts) const;
+  /// Up to `most` paths of every configuration that so many samples hold.
+  std::vector<PathSample> of_every_configuration(std::uint64_t samples, int most) const;
 
  private:
   const Scene& scene_;
