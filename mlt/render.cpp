@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mlt/render.h"
 
+#include <algorithm>
 #include <sstream>
 
 #include "core/util/parallel.h"
@@ -10,7 +11,18 @@ namespace fogbow {
 
 namespace {
 
-void finish(RenderResult& result, const Session& session, const RenderSettings& settings) {
+/// Whether there are paths from Dirac positions on which no two neighbouring vertices scatter
+/// smoothly: no technique samples them.
+bool has_unreachable_classes(const Scene& scene) {
+  bool point_lights = false;
+  for (std::size_t i = 0; i < scene.emitter_count(); ++i)
+    point_lights |= scene.emitter(i).kind() == EmitterKind::Point;
+  return point_lights && std::ranges::any_of(scene.surfaces(),
+                                             [](const Surface& s) { return s.bsdf->has_dirac(); });
+}
+
+void finish(RenderResult& result, const Scene& scene, const Session& session,
+            const RenderSettings& settings) {
   result.integrator = settings.integrator;
   result.groups = Film::kGroups;
   result.seconds = session.seconds();
@@ -18,6 +30,10 @@ void finish(RenderResult& result, const Session& session, const RenderSettings& 
   result.cpu_seconds = session.cpu_seconds();
   result.rays = session.rays();
   result.notes.insert(result.notes.begin(), settings.notes.begin(), settings.notes.end());
+  if (has_unreachable_classes(scene))
+    result.notes.push_back(
+        "light from point lights that goes through specular surfaces and is seen through specular "
+        "surfaces, with no two other vertices next to each other, is not sampled");
   if (!settings.depth_capped || result.lengths.empty()) return;
   const ClassShare& last = result.lengths.back();
   const double cut = last.k == settings.max_depth + 1 ? last.value : 0;
@@ -68,7 +84,7 @@ RenderResult render(const Scene& scene, const RenderOptions& options) {
   RenderResult result = settings.uses_chains()
                             ? render_chains(scene, options, settings, session)
                             : render_independent(scene, options, settings, session);
-  finish(result, session, settings);
+  finish(result, scene, session, settings);
   return result;
 }
 

@@ -54,7 +54,7 @@ void add_half_spaces(std::vector<ClosedForm>& forms) {
                    {{"albedo", "0.5"}, {"half_width", "20"}, {"half_depth", "6"}},
                    half_space(0.5),
                    true,
-                   {{"path", 30}, {"light", 2200}, {"bdpt", 60}, {"pssmlt", 150}},
+                   {{"path", 30}, {"light", 2200}, {"bdpt", 60}, {"pssmlt", 150}, {"mlt", 600}},
                    ""});
   forms.push_back({"Chandrasekhar, albedo 0.9",
                    name,
@@ -68,7 +68,7 @@ void add_half_spaces(std::vector<ClosedForm>& forms) {
                    {{"albedo", "0.99"}, {"half_width", "60"}, {"half_depth", "30"}},
                    half_space(0.99),
                    true,
-                   {{"path", 130}, {"pssmlt", 200, kLongOnly}},
+                   {{"path", 130}, {"pssmlt", 300, kLongOnly}},
                    "light and bdpt: a hundred scatterings make too long a computation"});
   forms.push_back({"Giovanelli",
                    "half-space-glass",
@@ -90,7 +90,7 @@ void add_slabs(std::vector<ClosedForm>& forms) {
                    narrow,
                    everywhere(0.09739),
                    true,
-                   {{"path", 140}, {"bdpt", 330}, {"pssmlt", 310}},
+                   {{"path", 140}, {"bdpt", 330}, {"pssmlt", 450}},
                    too_narrow});
   forms.push_back({"van de Hulst T",
                    name,
@@ -136,7 +136,8 @@ void add_enclosures(std::vector<ClosedForm>& forms) {
   add_room(forms, "enclosure", scene, {}, {kGlass}, {{"path", 12}, {"bdpt", 24}, {"pssmlt", 140}},
            {"light", 950});
   add_room(forms, "enclosure, fog in R and G", scene, {{"fog_sigma_t", "0.5, 0.8, 0"}}, {kGlass},
-           {{"path", 40}, {"bdpt", 40}, {"pssmlt", 350}}, {"light", 1900, kCostly});
+           {{"path", 40}, {"bdpt", 40}, {"pssmlt", 350}, {"mlt", 6000, kLongOnly}},
+           {"light", 1900, kCostly});
   forms.push_back({"enclosure from inside glass",
                    scene,
                    {{"camera", "0.3, -0.4, -0.1"}, {"medium", "milk"}},
@@ -156,7 +157,7 @@ void add_cavities(std::vector<ClosedForm>& forms) {
            {{"path", 34}, {"bdpt", 80}, {"pssmlt", 1000, kLongOnly}}, {"light", 600});
   add_room(forms, "cavity, cloud only emits", scene,
            {{"cloud_albedo", "0"}, {"cloud_emission", "1"}}, balls,
-           {{"path", 5}, {"bdpt", 13}, {"pssmlt", 140}}, {"light", 400});
+           {{"path", 5}, {"bdpt", 13}, {"pssmlt", 140}, {"mlt", 6000, kLongOnly}}, {"light", 400});
   forms.push_back({"cavity from inside glass",
                    scene,
                    {{"camera", "0.3, -0.4, -0.1"}, {"medium", "tinted"}},
@@ -195,7 +196,7 @@ void add_point_lights(std::vector<ClosedForm>& forms) {
                    {{"res", "8"}},
                    of(ball_caustic_pixels, true),
                    false,
-                   {{"light", 600}, {"bdpt", 600}, {"pssmlt", 900}},
+                   {{"light", 600}, {"bdpt", 600}, {"pssmlt", 1100}, {"mlt", 2000}},
                    no_caustic});
 }
 
@@ -206,7 +207,7 @@ void add_airlight(std::vector<ClosedForm>& forms) {
        {},
        of(airlight_pixels, 0.01),
        false,
-       {{"path", 14}, {"bdpt", 32}, {"pssmlt", 140}},
+       {{"path", 14}, {"bdpt", 32}, {"pssmlt", 140}, {"mlt", 600}},
        "light: connects to scattering close to the pinhole, without a finite variance"});
   forms.push_back({"airlight, far near plane",
                    "airlight",

@@ -82,6 +82,7 @@ class Replicates {
     return estimator_ ? independent(seed, samples) : chains(seed, samples / pixels);
   }
   std::uint64_t samples() const { return samples_; }
+  bool uses_chains() const { return settings_.uses_chains(); }
   /// Part of the light in paths as long as max_depth allows.
   double longest_share() const { return longest_ / total_; }
 
@@ -182,7 +183,7 @@ class ClosedForms : public ::testing::TestWithParam<Comparison> {};
 /// Relative values of all regions, replicate by replicate.
 std::array<std::vector<double>, kRegions> measure(const Comparison& comparison, double samples,
                                                   const Regions& regions, Replicates& replicates) {
-  const int n = comparison.sampler.integrator == "pssmlt" ? kReplicatesOfChains : kReplicates;
+  const int n = replicates.uses_chains() ? kReplicatesOfChains : kReplicates;
   std::array<std::vector<double>, kRegions> values;
   for (int r = 0; r < n; ++r) {
     const auto stream = static_cast<std::uint64_t>(comparison.index) * kReplicates + r + 1;

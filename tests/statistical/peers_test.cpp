@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // scenes/ against their references by Mitsuba 3, tile by tile (validation 8 of the design). In the
-// fast suite a few tiles of three scenes; in the long one all nine scenes, pssmlt and mlt beside bdpt.
+// fast suite a few tiles of three scenes; in the long one all nine scenes, pssmlt and mlt beside
+// bdpt.
 #include <gtest/gtest.h>
 
 #include <cstdio>
