@@ -32,17 +32,19 @@ bool PathSample::settle() {
 }
 
 std::uint64_t PathSample::key() const {
-  constexpr int kBits = 16;  // a vertex or edge each
+  constexpr int kBits = 12;  // a vertex or edge each
   if (path_.size() > kBits) return 0;
-  std::uint64_t degenerate = 0, in_medium = 0, attenuated = 0;
+  std::uint64_t degenerate = 0, glossy = 0, in_medium = 0, attenuated = 0;
   for (int i = 0; i < path_.size(); ++i) {
     degenerate |= std::uint64_t{path_[i].degenerate} << i;
+    glossy |= std::uint64_t{is_glossy(*scene_, path_[i])} << i;
     in_medium |= std::uint64_t{path_[i].in_medium()} << i;
     if (i < path_.last()) attenuated |= std::uint64_t{path_.sees_medium(i)} << i;
   }
-  const auto ends = static_cast<std::uint64_t>(path_.size()) |
-                    static_cast<std::uint64_t>(path_[0].kind) << 8;
-  return ends << 3 * kBits | attenuated << 2 * kBits | in_medium << kBits | degenerate;
+  const auto ends =
+      static_cast<std::uint64_t>(path_.size()) | static_cast<std::uint64_t>(path_[0].kind) << 8;
+  return ends << 4 * kBits | attenuated << 3 * kBits | in_medium << 2 * kBits | glossy << kBits |
+         degenerate;
 }
 
 std::optional<Rejection> PathSample::assemble(const Subpath& light, int s, const Subpath& eye,

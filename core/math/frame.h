@@ -20,6 +20,15 @@ struct Frame {
     t = Vec3(b, sign + n.y * n.y * a, -n.y);
   }
 
+  /// Change of s and t when the normal changes by dn.
+  Frame derivative(const Vec3& dn) const {
+    const double sign = std::copysign(1.0, n.z);
+    const double a = -1.0 / (sign + n.z), da = a * a * dn.z;
+    const double db = (dn.x * n.y + n.x * dn.y) * a + n.x * n.y * da;
+    return {Vec3(sign * (2 * n.x * dn.x * a + n.x * n.x * da), sign * db, -sign * dn.x),
+            Vec3(db, 2 * n.y * dn.y * a + n.y * n.y * da, -dn.y), dn};
+  }
+
   Vec3 to_local(const Vec3& w) const { return {dot(w, s), dot(w, t), dot(w, n)}; }
   Vec3 to_world(const Vec3& w) const { return w.x * s + w.y * t + w.z * n; }
 };

@@ -133,17 +133,51 @@ std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex
   return s;
 }
 
+bool is_glossy(const Scene& scene, const Vertex& x) {
+  constexpr double kMostRoughness = 0.3;
+  return x.on_surface() && !x.degenerate && bsdf(scene, x).roughness() <= kMostRoughness;
+}
+
+Vec3 facet_normal(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye) {
+  const Vec3 light = x.point.shading.to_local(w_light), eye = x.point.shading.to_local(w_eye);
+  const Bsdf& b = bsdf(scene, x);
+  // [Walter2007, eq. 16]; one index on both sides in reflection.
+  const bool reflects = light.z * eye.z > 0;
+  const Vec3 h = reflects ? light + eye : index_at(b, light) * light + index_at(b, eye) * eye;
+  return normalize(h.z < 0 ? -h : h);
+}
+
+std::optional<Vec3> facet_direction(const Scene& scene, const Vertex& x, const Vec3& from,
+                                    bool transmit, const Vec3& facet) {
+  const Vec3 local = x.point.shading.to_local(from);
+  const Vec3 m = dot(local, facet) < 0 ? -facet : facet;
+  const double c = dot(local, m);
+  Vec3 to = 2 * c * m - local;
+  if (transmit) {
+    const double eta = bsdf(scene, x).eta();
+    const double ratio = local.z > 0 ? 1 / eta : eta;  // n_from/n_to
+    const double cos2 = 1 - sqr(ratio) * (1 - sqr(c));
+    if (eta == 1 || !(cos2 > 0)) return std::nullopt;
+    to = (ratio * c - std::sqrt(cos2)) * m - ratio * local;
+  }
+  if (!(to.z * local.z * (transmit ? -1 : 1) > 0)) return std::nullopt;
+  return x.point.shading.to_world(to);
+}
+
+double facet_jacobian(const Scene& scene, const Vertex& x, const Vec3& from, const Vec3& to) {
+  const Vec3 m = facet_normal(scene, x, from, to);
+  const Vec3 a = x.point.shading.to_local(from), b = x.point.shading.to_local(to);
+  const double cos_b = dot(b, m);
+  if (a.z * b.z > 0) return m.z / (4 * std::abs(cos_b));
+  const Bsdf& s = bsdf(scene, x);
+  const double n_a = index_at(s, a), n_b = index_at(s, b);
+  return m.z * sqr(n_b) * std::abs(cos_b) / sqr(n_a * dot(a, m) + n_b * cos_b);
+}
+
 std::optional<Vec3> specular_direction(const Scene& scene, const Vertex& x, const Vec3& from,
                                        bool transmit) {
   if (!x.on_surface() || !bsdf(scene, x).has_dirac()) return std::nullopt;
-  const Vec3 local = x.point.shading.to_local(from);
-  if (!transmit) return x.point.shading.to_world(Vec3(-local.x, -local.y, local.z));
-  const double eta = bsdf(scene, x).eta();
-  const double ratio = local.z > 0 ? 1 / eta : eta;  // n_from/n_to
-  const double cos2 = 1 - sqr(ratio) * (1 - sqr(local.z));
-  if (eta == 1 || !(cos2 > 0)) return std::nullopt;
-  const double z = std::copysign(std::sqrt(cos2), -local.z);
-  return x.point.shading.to_world(Vec3(-ratio * local.x, -ratio * local.y, z));
+  return facet_direction(scene, x, from, transmit, Vec3(0, 0, 1));
 }
 
 double relative_index(const Scene& scene, const Vertex& x, const Vec3& w) {

@@ -58,6 +58,22 @@ std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex
 /// surfaces.
 double relative_index(const Scene& scene, const Vertex& x, const Vec3& w);
 
+/// Whether x scatters by microfacets of little roughness, so that a walk may hold the facet as it
+/// holds the normal of a mirror.
+bool is_glossy(const Scene& scene, const Vertex& x);
+
+/// The facet that scatters w_light into w_eye: its unit normal in the shading frame, on the
+/// exterior side.
+Vec3 facet_normal(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye);
+
+/// Where a facet sends what comes from `from`, by reflection or by transmission; nothing where it
+/// cannot.
+std::optional<Vec3> facet_direction(const Scene& scene, const Vertex& x, const Vec3& from,
+                                    bool transmit, const Vec3& facet);
+
+/// |do/dσ(to)| of o = (facet.x, facet.y), `from` being fixed.
+double facet_jacobian(const Scene& scene, const Vertex& x, const Vec3& from, const Vec3& to);
+
 /// Where the Dirac part of x's BSDF sends what comes from `from`, by reflection or by transmission;
 /// nothing where it has no such part or reflects totally.
 std::optional<Vec3> specular_direction(const Scene& scene, const Vertex& x, const Vec3& from,

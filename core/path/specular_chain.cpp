@@ -51,9 +51,13 @@ RayBundle::RayBundle(const Vertex& start, const Vec3& w) : w_(w), across_(w) {
 void RayBundle::scatter(const Scene& scene, const Vertex& x, double t, const Vec3& w_out) {
   const double ratio = relative_index(scene, x, -w_) / relative_index(scene, x, w_out);
   const SurfaceDerivatives s = scene.surface(x.id.shape).shape->derivatives(x.point);
+  const Vec3 facet = x.degenerate ? Vec3(0, 0, 1) : facet_normal(scene, x, -w_, w_out);
+  const Vec3 m = x.point.shading.to_world(facet);
   for (Derivative& d : d_) {
     transfer(d, w_, t, x.point.n_g);
-    scatter_specularly(d, w_, w_out, x.point.shading.n, normal_derivative(s, d.d_position), ratio);
+    const Vec3 dn = normal_derivative(s, d.d_position);
+    const Vec3 dm = x.degenerate ? dn : x.point.shading.derivative(dn).to_world(facet);
+    scatter_specularly(d, w_, w_out, m, dm, ratio);
   }
   w_ = w_out;
 }
@@ -61,6 +65,16 @@ void RayBundle::scatter(const Scene& scene, const Vertex& x, double t, const Vec
 std::array<Vec3, 2> RayBundle::spread(double t) const {
   return {d_[0].d_position + t * d_[0].d_direction, d_[1].d_position + t * d_[1].d_direction};
 }
+
+namespace {
+
+/// |N_g·ω_eye| |dσ(ω_eye)/do|: a glossy vertex' place in the reduced f, its facet being given.
+double facet_to_reduced(const Scene& scene, const Path& path, int i) {
+  const Vec3 w_light = direction(path, i, i - 1), w_eye = direction(path, i, i + 1);
+  return std::abs(dot(path[i].point.n_g, w_eye)) / facet_jacobian(scene, path[i], w_light, w_eye);
+}
+
+}  // namespace
 
 double chain_jacobian(const Scene& scene, const Path& path, int a, int b) {
   const int step = a < b ? 1 : -1;
@@ -84,7 +98,9 @@ double chain_correction(const Scene& scene, const Path& path, int a, int b) {
     edge.w = direction(path, i, i + 1);
     edge.length = length(path[i + 1].position() - path[i].position());
     correction /= geometric_term(scene, path[i], path[i + 1], edge);
-    if (i > a) correction *= dirac_to_reduced(scene, path[i], edge.w);
+    if (i == a) continue;
+    correction *= path[i].degenerate ? dirac_to_reduced(scene, path[i], edge.w)
+                                     : facet_to_reduced(scene, path, i);
   }
   return correction;
 }

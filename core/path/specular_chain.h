@@ -16,7 +16,8 @@ class RayBundle {
   };
 
   RayBundle(const Vertex& start, const Vec3& w);
-  /// At distance t the ray meets x, which sends it on along w_out.
+  /// At distance t the ray meets x, which sends it on along w_out by a facet that is held in the
+  /// shading frame.
   void scatter(const Scene& scene, const Vertex& x, double t, const Vec3& w_out);
   /// Of the position at distance t from the last vertex.
   std::array<Vec3, 2> spread(double t) const;
@@ -29,12 +30,14 @@ class RayBundle {
   Derivative d_[2];
 };
 
-/// |dσ_a/dA⊥_b| from path[a] through the degenerate vertices between to path[b]; from infinity
-/// |dA⊥_a/dA⊥_b|. `a` may be greater than `b`: then seen from the eye's side.
+/// |dσ_a/dA⊥_b| from path[a] through the degenerate vertices between to path[b], glossy ones
+/// keeping their facet; from infinity |dA⊥_a/dA⊥_b|. `a` may be greater than `b`: then seen from
+/// the eye's side.
 double chain_jacobian(const Scene& scene, const Path& path, int a, int b);
 
 /// What turns the factors of f between a and b > a, formal deltas included, into those of the
-/// reduced f: D_a J_{a→b} D_b over ∏G, and what dirac_to_reduced() says of each vertex between.
+/// reduced f: D_a J_{a→b} D_b over ∏G, and what dirac_to_reduced() says of each vertex between. For
+/// a glossy one, the part |do/dσ| that turns its area into the facet that is held.
 double chain_correction(const Scene& scene, const Path& path, int a, int b);
 
 }  // namespace fogbow

@@ -59,6 +59,8 @@ class Bsdf {
 
   /// Index of refraction of the interior over that of the exterior; 1 where nothing refracts.
   virtual double eta() const { return 1; }
+  /// Of the microfacets that all smooth scattering comes from; 1 where it does not come from such.
+  virtual double roughness() const { return 1; }
   /// Hemispherical reflectance or tint, for albedo layers and hints only.
   virtual RGB albedo(const SurfacePoint& x) const = 0;
   /// Name of the plugin, for reports.

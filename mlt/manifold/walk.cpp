@@ -57,14 +57,29 @@ std::optional<Vec3> newton_step(const Scene& scene, const MeasuredPath& y, const
 
 }  // namespace
 
+std::optional<Segment> held_chain_from(const Scene& scene, const MeasuredPath& x, int anchor,
+                                       Side toward) {
+  Segment s{anchor, anchor, toward};
+  do {
+    s.end += s.step();
+    if (s.end < 0 || s.end >= x.size()) return std::nullopt;
+  } while (x[s.end].degenerate || (s.end > 0 && s.end < x.last() && is_glossy(scene, x[s.end])));
+  return s;
+}
+
 bool walk(const Scene& scene, MeasuredPath& y, const Segment& s) {
   if (y[s.anchor].infinite()) return false;
   const Vec3 target = y[s.end].position();
   const double near = kConverged * scene.radius();
   thread_local MeasuredPath trial;
+  thread_local std::vector<Vec3> facets;
+  facets.clear();
+  for (int i = s.anchor + s.step(); i != s.end; i += s.step())
+    facets.push_back(y[i].degenerate ? Vec3(0, 0, 1)
+                                     : facet_normal(scene, y[i], y.to_light(i), y.to_eye(i)));
   // Even the first chain is traced anew: what follows from it then depends on its first direction.
   Vec3 direction = departure(y, s), w = direction;
-  if (retrace_chain(scene, y, s, w)) return false;
+  if (retrace_chain(scene, y, s, w, facets)) return false;
   LastRay ray = last_ray(y, s, w, target);
   for (int i = 0; i < kMaxSteps; ++i) {
     if (!(ray.t > 0)) return false;
@@ -78,7 +93,7 @@ bool walk(const Scene& scene, MeasuredPath& y, const Segment& s) {
       const Vec3 tried = normalize(direction + part * *step);
       trial = y;
       w = tried;
-      if (retrace_chain(scene, trial, s, w)) continue;
+      if (retrace_chain(scene, trial, s, w, facets)) continue;
       const LastRay last = last_ray(trial, s, w, target);
       if (!(length(last.residual) < distance)) continue;
       nearer = true;

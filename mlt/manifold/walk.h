@@ -4,6 +4,11 @@
 
 namespace fogbow {
 
+/// From `anchor` through degenerate and glossy vertices to the first that is neither; nothing where
+/// there is none.
+std::optional<Segment> held_chain_from(const Scene& scene, const MeasuredPath& x, int anchor,
+                                       Side toward);
+
 /// Lets the specular chain of a segment follow its end: the vertices of y between the anchor and
 /// the end, which has moved, become those through which light goes from the one to the other, by
 /// the same events. Newton's method with backtracking on the direction at the anchor; every iterate

@@ -17,13 +17,13 @@ struct Move {
 
 /// Calls visit(Move) for every way to move a vertex in front of a specular chain.
 template <class Visit>
-void for_each_move(const MeasuredPath& x, Visit&& visit) {
+void for_each_move(const Scene& scene, const MeasuredPath& x, Visit&& visit) {
   for (int i = 0; i < x.size(); ++i) {
     if (x[i].degenerate) continue;
     for (const Side toward : {Side::Light, Side::Eye}) {
       const auto traced = segment_from(x, i, toward);
       if (!traced) continue;
-      const auto beyond = segment_from(x, traced->end, toward);
+      const auto beyond = held_chain_from(scene, x, traced->end, toward);
       if (!beyond || beyond->length() < 2 || x[beyond->end].infinite()) continue;
       const Side back = toward == Side::Light ? Side::Eye : Side::Light;
       visit(Move{*traced, {beyond->end, traced->end, back}});
@@ -31,9 +31,9 @@ void for_each_move(const MeasuredPath& x, Visit&& visit) {
   }
 }
 
-int count(const MeasuredPath& x) {
+int count(const PathSample& x) {
   int n = 0;
-  for_each_move(x, [&](const Move&) { ++n; });
+  for_each_move(x.scene(), x.path(), [&](const Move&) { ++n; });
   return n;
 }
 
@@ -42,16 +42,17 @@ class Manifold final : public Mutation<PathSample> {
   explicit Manifold(double weight) : weight_(weight) {}
   const char* name() const override { return "manifold"; }
   double selection_weight(const PathSample& x) const override {
-    return count(x.path()) > 0 ? weight_ : 0.0;
+    return count(x) > 0 ? weight_ : 0.0;
   }
 
   Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
     const Scene& scene = x.scene();
     MeasuredPath& path = y.path();
-    const int chosen = static_cast<int>(rng.uniform() * count(x.path()));
+    const int candidates = count(x);
+    const int chosen = static_cast<int>(rng.uniform() * candidates);
     Move move{};
     int n = 0;
-    for_each_move(x.path(), [&](const Move& m) {
+    for_each_move(scene, x.path(), [&](const Move& m) {
       if (n++ == chosen) move = m;
     });
     y = x;
@@ -64,9 +65,10 @@ class Manifold final : public Mutation<PathSample> {
     if (!returns(scene, x.path(), path, move.walked)) return refuse(Rejection::NotReversible);
 
     // T of the traced part alone; f of the walked part is the reduced one [JakobMarschner2012].
+    // A vertex that has come onto something glossy, or left it, has other moves.
     const double traced = departure_density(scene, x.path(), move.traced) /
                           departure_density(scene, path, move.traced);
-    return {std::log(traced) + log_reduction(scene, path, move.walked) -
+    return {std::log(traced * candidates / count(y)) + log_reduction(scene, path, move.walked) -
                 log_reduction(scene, x.path(), move.walked),
             std::nullopt};
   }

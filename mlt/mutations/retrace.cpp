@@ -106,12 +106,17 @@ std::optional<Rejection> retrace(const Scene& scene, MeasuredPath& y, const Segm
 }
 
 std::optional<Rejection> retrace_chain(const Scene& scene, MeasuredPath& y, const Segment& s,
-                                       Vec3& w) {
+                                       Vec3& w, std::span<const Vec3> facets) {
   for (int i = s.anchor; i + s.step() != s.end; i += s.step()) {
     const int next = i + s.step();
     const bool transmit = transmits(y, next);  // before it is overwritten
     if (const auto why = trace_vertex(scene, y, s, i, w)) return why;
-    const auto out = specular_direction(scene, y[next], -arrival(y, s, next), transmit);
+    const Vec3 from = -arrival(y, s, next);
+    std::optional<Vec3> out;
+    if (y[next].degenerate)
+      out = specular_direction(scene, y[next], from, transmit);
+    else if (is_glossy(scene, y[next]))
+      out = facet_direction(scene, y[next], from, transmit, facets[std::abs(i - s.anchor)]);
     if (!out) return Rejection::WrongConfiguration;
     w = *out;
   }

@@ -2,6 +2,7 @@
 #pragma once
 #include <algorithm>
 #include <optional>
+#include <span>
 
 #include "core/path/techniques.h"
 #include "mlt/mutation.h"
@@ -38,10 +39,10 @@ Vec3 departure(const MeasuredPath& x, const Segment& segment);
 std::optional<Rejection> retrace(const Scene& scene, MeasuredPath& y, const Segment& segment,
                                  const Vec3& w);
 
-/// The same without the segment's end: `w` becomes the direction in which the last degenerate
-/// vertex sends it on.
+/// The same without the segment's end: `w` becomes the direction in which the last vertex between
+/// sends it on. Glossy vertices scatter by `facets`, one for each vertex between.
 std::optional<Rejection> retrace_chain(const Scene& scene, MeasuredPath& y, const Segment& segment,
-                                       Vec3& w);
+                                       Vec3& w, std::span<const Vec3> facets = {});
 
 /// Density in μ of the segment's vertices when its direction at the anchor has density one in solid
 /// angle (across the light for infinite ones) and distances and events are kept.

@@ -22,6 +22,8 @@ class MicrofacetDistribution {
   double pdf_visible(const Vec3& w, const Vec3& h) const {
     return D(h) * G1(w) * std::fmax(dot(w, h), 0.0) / w.z;
   }
+  /// The larger α.
+  double roughness() const { return std::fmax(alpha_.x, alpha_.y); }
   Vec3 sample_visible(const Vec3& w, const Vec2& u) const;
   /// The u with sample_visible(w, u) = h.
   Vec2 invert_visible(const Vec3& w, const Vec3& h) const;

@@ -14,6 +14,7 @@ class RoughConductor final : public ReflectingBsdf {
       : facets_(roughness), index_(eta, k), tint_(checked_reflectance(reflectance)) {}
 
   bool has_smooth() const override { return true; }
+  double roughness() const override { return facets_.roughness(); }
 
   RGB f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const override {
     if (!(w_light.z > 0 && w_eye.z > 0)) return RGB(0);

@@ -34,6 +34,7 @@ class RoughDielectric final : public Bsdf {
                              const Vec3& auxiliary) const override;
 
   double eta() const override { return eta_; }
+  double roughness() const override { return facets_.roughness(); }
   RGB albedo(const SurfacePoint&) const override { return glm::max(reflectance_, transmittance_); }
   const char* name() const override { return "roughdielectric"; }
 
