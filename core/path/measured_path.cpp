@@ -12,6 +12,17 @@ double to_measure(const Scene& scene, const Vertex& x, const Vertex& y, const Ed
   return x.infinite() ? pdf * D(scene, y, x_to_y.w) : to_measure(y, x_to_y, pdf);
 }
 
+MeasuredPath& MeasuredPath::operator=(const MeasuredPath& x) {
+  reserve(x.capacity());
+  vertices_ = x.vertices_;
+  edges_ = x.edges_;
+  transport_ = x.transport_;
+  scattering_ = x.scattering_;
+  f_ = x.f_;
+  raster_ = x.raster_;
+  return *this;
+}
+
 void MeasuredPath::reserve(int vertices) {
   vertices_.reserve(vertices);
   edges_.reserve(vertices);

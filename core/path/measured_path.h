@@ -14,8 +14,16 @@ namespace fogbow {
 /// densities.
 class MeasuredPath {
  public:
+  MeasuredPath() = default;
+  /// A copy has the room of what it was made from.
+  MeasuredPath(const MeasuredPath& x) { *this = x; }
+  MeasuredPath& operator=(const MeasuredPath& x);
+  MeasuredPath(MeasuredPath&&) = default;
+  MeasuredPath& operator=(MeasuredPath&&) = default;
+
   /// Room for paths of so many vertices; no allocation up to there.
   void reserve(int vertices);
+  int capacity() const { return static_cast<int>(vertices_.capacity()); }
   /// Vertices beyond the old size are to be written before anything else is asked.
   void resize(int k);
 

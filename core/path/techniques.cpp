@@ -23,6 +23,7 @@ double log_range_density(const Scene& scene, const MeasuredPath& path, Range ran
   FOGBOW_CHECK(weights.size() == static_cast<std::size_t>(range.size()) + 1);
   // p_l = from_light(first … first + l) · from_eye(first + l … end), the second factor by suffixes.
   thread_local std::vector<ScaledProduct<double>> from_eye;
+  from_eye.reserve(path.capacity() + 1);
   from_eye.assign(range.size() + 1, ScaledProduct<double>());
   for (int l = range.size() - 1; l >= 0; --l) {
     from_eye[l] = from_eye[l + 1];

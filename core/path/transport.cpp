@@ -209,10 +209,14 @@ ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& 
   });
 }
 
+/// More sections than most rays have; where there are more, the buffer grows once.
+constexpr std::size_t kSections = 32;
+
 void RayProfile::trace(const Scene& scene, const Vertex& x, const Vec3& w, double t_min,
                        double t_max) {
   ray_ = Ray{x.position(), w, t_min, t_max};
   sections_.clear();
+  sections_.reserve(kSections);
   edge_ = Edge{w, 0, RGB(1), RGB(1)};
   const auto pass = [&](const Medium* medium, double t0, double t1) {
     sections_.push_back({t0, t1, medium, edge_.tau, edge_.tau_q});

@@ -74,6 +74,7 @@ bool walk(const Scene& scene, MeasuredPath& y, const Segment& s) {
   thread_local MeasuredPath trial;
   thread_local std::vector<Vec3> facets;
   facets.clear();
+  facets.reserve(y.capacity());
   for (int i = s.anchor + s.step(); i != s.end; i += s.step())
     facets.push_back(y[i].degenerate ? Vec3(0, 0, 1)
                                      : facet_normal(scene, y[i], y.to_light(i), y.to_eye(i)));

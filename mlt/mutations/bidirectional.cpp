@@ -83,9 +83,9 @@ class Bidirectional final : public Mutation<PathSample> {
     const int n = range.size(), k = y.path().size() - n + deleted;
     const double choices = deletion(k).probability(deleted) / (k - deleted + 1) *
                            insertion(k, deleted).probability(n) / (n + 1);
-    thread_local std::vector<double> splits;
-    splits.assign(n + 1, choices);
-    return log_range_density(y.scene(), y.path(), range, splits);
+    std::array<double, kLongest + 1> splits;
+    splits.fill(choices);
+    return log_range_density(y.scene(), y.path(), range, std::span(splits).first(n + 1));
   }
 
   /// x's first s and last t vertices with room for n between them.

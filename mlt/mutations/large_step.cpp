@@ -20,6 +20,8 @@ class LargeStep final : public Mutation<PathSample> {
   Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
     const auto [s, t] = techniques_.sample(rng.uniform());
     thread_local Subpath light, eye;
+    light.reserve(x.path().capacity());
+    eye.reserve(x.path().capacity());
     if (const auto why = trace(x.scene(), s, t, rng, light, eye)) return refuse(*why);
     if (const auto why = y.assemble(light, s, eye, t)) return refuse(*why);
     const double forward = log_density(y);
