@@ -235,18 +235,21 @@ TEST_P(LocalLaws, MoveAndWeighAsDefined) {
     const Path &from = x.path().vertices(), &to = y.path().vertices();
     const std::string at = describe(x.path()) + " to " + describe(y.path());
     ASSERT_EQ(from.size(), to.size());
-    int first = x.path().size(), last = -1, flips = 0;
+    int first = x.path().size(), last = -1, flips = 0, free = 0;
     for (int i = 0; i < x.path().size(); ++i) {
       EXPECT_EQ(from[i].degenerate, to[i].degenerate) << at;
       flips += from[i].kind != to[i].kind;
       if (same_vertex(from[i], to[i])) continue;
       first = std::min(first, i);
       last = i;
+      free += !to[i].degenerate;
     }
     EXPECT_LE(flips, name_ == "propagation" ? 1 : 0 + (name_ == "switch")) << at;
     if (name_ == "switch") {
       EXPECT_EQ(flips, 1) << at;
     }
+    // Of walks through glossy vertices no second derivation is here; two_point_test has them.
+    if (name_ == "manifold" && free > 1) return;
     double beyond = kInfinity;  // how much of the difference rounding does not explain
     for (const Way& way : ways(name_, at_.scene, from, to)) {
       if (way.first > first || last > way.last) continue;
