@@ -81,8 +81,9 @@ class Selection {
   double total_ = 0;
 };
 
-/// A Metropolis–Hastings chain with target f*. A State offers log_f_star(), raster(), serialize(out)
-/// and selection_key(): states of one key that is not 0 have the same selection weights.
+/// A Metropolis–Hastings chain with target f*. A State offers log_f_star(), raster(),
+/// serialize(out) and selection_key(): states of one key that is not 0 have the same selection
+/// weights.
 template <class State>
 class Chain {
  public:

@@ -48,6 +48,7 @@ struct ClassShare {
 
 struct MutationReport {
   std::string name;
+  double weight = 0;  ///< as asked for, unnormalized
   std::uint64_t proposed = 0, accepted = 0;
   std::map<std::string, std::uint64_t> rejected;  ///< by kind
   double mean_squared_jump = 0;  ///< E[a |Δraster|²], Δraster in parts of the picture

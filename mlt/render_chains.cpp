@@ -40,6 +40,7 @@ struct PrimarySampleChains {
   PrimarySampleChains(const Scene&, const RenderSettings& settings, const Estimator& estimator,
                       std::uint64_t)
       : table(make_primary_sample_mutations(estimator, settings.large_step_probability)) {}
+  double weight(const Mutation<State>& mutation) const { return mutation.selection_weight({}); }
   State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
     return bootstrap.start(group, chain);
   }
@@ -50,6 +51,7 @@ struct PathChains {
   const Scene& scene;
   int max_vertices;
   std::uint64_t seed;
+  MutationWeights weights;
   TechniqueDistribution techniques;
   MutationTable<State> table;
 
@@ -58,9 +60,11 @@ struct PathChains {
       : scene(s),
         max_vertices(settings.max_depth + 1),
         seed(seed_),
+        weights(settings.mutations),
         techniques(pilot_techniques(estimator, seed, settings.bootstrap_samples / kPilot),
                    max_vertices),
         table(make_path_mutations(settings.mutations, techniques, max_vertices)) {}
+  double weight(const Mutation<State>& mutation) const { return weights.at(mutation.name()); }
   State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
     Rng rng(seed, RngDomain::WarmUp, chain, 2);
     return PathSample::choose(scene, max_vertices, bootstrap.start(group, chain), rng.uniform());
@@ -173,6 +177,7 @@ struct ChainRender {
     std::vector<MutationReport> result;
     for (std::size_t m = 0; m < sums.size(); ++m) {
       MutationReport report = describe(*chains.table[m], sums[m]);
+      report.weight = chains.weight(*chains.table[m]);
       if (seconds > 0) report.time_share = sums[m].seconds / seconds;
       result.push_back(std::move(report));
     }

@@ -44,6 +44,7 @@ ordered_json mutations_json(const RenderResult& result) {
     if (mutation.proposed > 0)
       acceptance = static_cast<double>(mutation.accepted) / static_cast<double>(mutation.proposed);
     list.push_back({{"name", mutation.name},
+                    {"weight", mutation.weight},
                     {"proposed", mutation.proposed},
                     {"accepted", mutation.accepted},
                     {"acceptance", acceptance},

@@ -201,7 +201,9 @@ SceneDescription sky_lens() {
 
 SceneDescription two_kinds_of_glass() {
   Builder b;
-  b.floor(gray()).ceiling_light(0.4, RGB(10)).emitter(make_constant_emitter(RGB(0.2)));
+  b.floor(gray()).ceiling_light(0.4, RGB(10));
+  b.emitter(make_constant_emitter(RGB(0.15))).emitter(make_constant_emitter(RGB(0.02, 0.05, 0.1)));
+  b.add(sphere(Vec3(0, 0.3, 0), 0.3), make_dielectric(1.9));
   b.add(sphere(Vec3(-0.5, -0.4, 0), 0.45), make_dielectric(1.5, RGB(1), RGB(0.9, 1, 0.9)));
   b.add(sphere(Vec3(0.5, -0.4, 0), 0.45),
         make_rough_dielectric({MicrofacetKind::Ggx, 0.2, 0.4}, 1.5));

@@ -265,13 +265,20 @@ TEST_P(LocalLaws, MoveAndWeighAsDefined) {
   EXPECT_GE(asked, 0.9 * total) << "of too few are the derivatives known";
 }
 
+/// p_s where an eye subpath that escapes ends on one of the infinite emitters, chosen uniformly;
+/// BDPT takes them all at once.
+double chosen_density(const Scene& scene, const Path& path, int s) {
+  const auto emitters = static_cast<double>(scene.infinite_emitters().size());
+  return technique_density(scene, path, s) / (s == 0 && path[0].infinite() ? emitters : 1.0);
+}
+
 /// T(x̄→ȳ) and T(ȳ→x̄) of what does not depend on x̄, technique by technique.
 TEST_P(LargeStepLaws, WeighAllTechniques) {
   const auto log_T = [&](const PathSample& x) {
     const auto chosen = at_.population.techniques().probabilities(x.path().size());
     double sum = 0;
     for (int s = 0; s < x.path().size(); ++s)
-      sum += chosen[s] * technique_density(at_.scene, x.path().vertices(), s);
+      sum += chosen[s] * chosen_density(at_.scene, x.path().vertices(), s);
     return std::log(sum);
   };
   Worst worst;
@@ -294,7 +301,7 @@ TEST_P(BidirectionalLaws, WeighAllSplits) {
   const auto log_T = [&](const PathSample& x, int s, int t) {
     double sum = 0;
     for (int l = s; l <= x.path().size() - t; ++l)
-      sum += technique_density(at_.scene, x.path().vertices(), l);
+      sum += chosen_density(at_.scene, x.path().vertices(), l);
     return std::log(sum);
   };
   for_each_proposal([&](const PathSample& x, const PathSample& y, const Proposal& proposal) {
@@ -343,7 +350,7 @@ TEST_P(BidirectionalLaws, RangesArePartsOfTechniques) {
     double some = 0, all = 0;
     for (int l = first; l <= end; ++l) {
       weights[l - first] = rng.uniform();
-      const double p = technique_density(at_.scene, x.vertices(), l);
+      const double p = chosen_density(at_.scene, x.vertices(), l);
       some += weights[l - first] * p;
       all += p;
     }

@@ -33,12 +33,12 @@ class Outputs(CliTest):
         self.assertEqual((report["samples"], report["sample_unit"]), (40_000_000_000, "mutations"))
         self.assertEqual((report["chains"], report["groups"]), (64, 8))
         self.assertEqual(report["mutations"], [
-            {"name": "large step", "proposed": 1000, "accepted": 250, "acceptance": 0.25,
+            {"name": "large step", "weight": 0.5, "proposed": 1000, "accepted": 250, "acceptance": 0.25,
              "rejected": {"NonFinite": 3, "Occluded": 500}, "mean_squared_raster_jump": 0.0625, "time_share": 0.75,
              "seconds_per_proposal": 1e-6,
              "kinds": {"S-V": {"proposed": 400, "accepted": 100}, "V-S": {"proposed": 600, "accepted": 150},
                        "never": {"proposed": 0, "accepted": 0}}},
-            {"name": "small step", "proposed": 0, "accepted": 0, "acceptance": None, "rejected": {},
+            {"name": "small step", "weight": 1.5, "proposed": 0, "accepted": 0, "acceptance": None, "rejected": {},
              "mean_squared_raster_jump": 0, "time_share": 0, "seconds_per_proposal": 0, "kinds": {}}])
         self.assertEqual(report["b_k_c"], [
             {"configuration": "SMS", "k": 3, "value": 0.19, "standard_error": 0.002},

@@ -95,6 +95,7 @@ void fill_statistics(RenderResult& result, const RenderOptions& options) {
   result.lengths = {{2, 0.05, 0.001}, {3, 0.2, 0.002}, {4, 1e-6, 1e-7}, {9, 5e-7, 1e-7}};
   result.classes = {{3, 0.19, 0.002, "SMS"}, {2, 0.05, 0.001, "SS"}};
   result.mutations = {{"large step",
+                       0.5,
                        1000,
                        250,
                        {{"Occluded", 500}, {"NonFinite", 3}},
@@ -102,7 +103,7 @@ void fill_statistics(RenderResult& result, const RenderOptions& options) {
                        0.75,
                        1e-6,
                        {{"S-V", 400, 100}, {"V-S", 600, 150}, {"never", 0, 0}}},
-                      {"small step", 0, 0, {}, 0, 0, 0, {}}};
+                      {"small step", 1.5, 0, 0, {}, 0, 0, 0, {}}};
   result.diagnostics = {{"r_hat", 1.01}};
   result.notes = {"the scene asks for volpath"};
 }
