@@ -18,7 +18,7 @@ MEAN_BIAS, TILE_BIAS = (0.04, 0.2) if LONG else (0.25, 0.75)
 # Where hardly a path changes but by rounding, equal seeds leave little to average over.
 SPP, REPLICATES, FEW = (64, 40, 20) if LONG else (8, 16, 4)
 # More samples where pictures are noisier: for the same power.
-NOISY_INTEGRATORS = {"light": 3}
+NOISY_INTEGRATORS = {"light": 3, "mlt": 4}
 NOISY_SCENES = {"smooth_mesh": 3, "sky_and_lens": 3, "point_light": 3, "rough_glass": 4}
 
 # Next to a camera in fog a light path's contribution has no variance: what is left of its picture is its bits.
@@ -136,7 +136,7 @@ def add_extremes_of_depth_and_film(manifest, base):
     manifest.agree("field of view of 0.01 degrees", with_value(glow, fov, 0.01), ("path", "bdpt", "pssmlt", "mlt"))
     for integrator in INTEGRATORS:
         # Chains are slower where they see but a part of the picture.
-        more, most = {"light": (2, 2), "pssmlt": (4, 12), "mlt": (4, 12)}.get(integrator, (1, 1))
+        more, most = {"light": (2, 2), "pssmlt": (4, 12), "mlt": (8, 24)}.get(integrator, (1, 1))
         window, pixel = [5, 6, 9, 7], [1, 2, 1, 1]
         whole, few = manifest.side(glow, integrator, more), manifest.side(glow, integrator, 32 * most, size=[3, 3])
         one = manifest.side(glow, integrator, 256, size=[1, 1])

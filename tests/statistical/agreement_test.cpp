@@ -62,12 +62,12 @@ TEST_P(Agreement, EachIntegratorEqualsBdptOnWhatBothCanMake) {
   const Sampling bdpt = run(*make_bdpt(scene, settings), true, 10);
   const Sampling path = run(*make_path_tracer(scene, settings), false, 20);
   const Sampling light = run(*make_light_tracer(scene, settings), true, 30);
-  const auto chains = [&](const char* integrator, std::uint64_t stream) {
+  const auto chains = [&](const char* integrator, std::uint64_t pilot, std::uint64_t stream) {
     return sample_until(
         [&](std::uint64_t mutations, std::uint64_t s) {
           return render_chains(scene, integrator, kLongest, kRuns, mutations, s);
         },
-        8192, wanted, kLevel, seed + stream);
+        pilot, wanted, kLevel, seed + stream);
   };
 
   int tests = expect_agreement(name + ": bdpt, path", at(bdpt, Restriction::ByPath),
@@ -75,9 +75,9 @@ TEST_P(Agreement, EachIntegratorEqualsBdptOnWhatBothCanMake) {
   tests += expect_agreement(name + ": bdpt, light", at(bdpt, Restriction::ByLight),
                             at(light, Restriction::ByLight), wanted, kLevel);
   tests += expect_agreement(name + ": bdpt, pssmlt", at(bdpt, Restriction::All),
-                            at(chains("pssmlt", 40), Restriction::All), wanted, kLevel);
+                            at(chains("pssmlt", 8192, 40), Restriction::All), wanted, kLevel);
   tests += expect_agreement(name + ": bdpt, mlt", at(bdpt, Restriction::All),
-                            at(chains("mlt", 50), Restriction::All), wanted, kLevel);
+                            at(chains("mlt", 65536, 50), Restriction::All), wanted, kLevel);
   EXPECT_LE(tests, kTestsOfOneScene);
   const double all = at(bdpt, Restriction::All).mean().mean;
   std::printf("%-44s path can make %.1f%%, light %.1f%% (beyond the lens) of the light\n",

@@ -45,10 +45,13 @@ struct Comparison {
 
 std::vector<Comparison> comparisons() {
   std::vector<Comparison> result;
-  for (const ClosedForm& form : closed_forms())
-    for (const Sampler& sampler : form.samplers)
-      if (is_long() || sampler.price != Sampler::Price::kLongOnly)
-        result.push_back({&form, sampler, static_cast<int>(result.size())});
+  // mlt comes last: it shares out no other's random numbers.
+  for (const bool mlt : {false, true})
+    for (const ClosedForm& form : closed_forms())
+      for (const Sampler& sampler : form.samplers)
+        if ((sampler.integrator == "mlt") == mlt &&
+            (is_long() || sampler.price != Sampler::Price::kLongOnly))
+          result.push_back({&form, sampler, static_cast<int>(result.size())});
   return result;
 }
 int comparison_count() {
@@ -248,7 +251,7 @@ INSTANTIATE_TEST_SUITE_P(All, ClosedForms, ::testing::ValuesIn(comparisons()), t
 
 TEST(ClosedForms, WhatIsLeftOut) {
   for (const ClosedForm& form : closed_forms()) {
-    EXPECT_TRUE(form.samplers.size() == 4 || !form.not_sampled.empty()) << form.name;
+    EXPECT_TRUE(form.samplers.size() >= 4 || !form.not_sampled.empty()) << form.name;
     if (!form.not_sampled.empty())
       std::printf("%-34s without %s\n", form.name.c_str(), form.not_sampled.c_str());
   }
