@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
 #include <cstdlib>
 #include <ctime>
 
@@ -251,7 +252,10 @@ INSTANTIATE_TEST_SUITE_P(All, ClosedForms, ::testing::ValuesIn(comparisons()), t
 
 TEST(ClosedForms, WhatIsLeftOut) {
   for (const ClosedForm& form : closed_forms()) {
-    EXPECT_TRUE(form.samplers.size() >= 4 || !form.not_sampled.empty()) << form.name;
+    // mlt comes beside the four whose absence has to be explained.
+    const auto references = std::ranges::count_if(
+        form.samplers, [](const Sampler& sampler) { return sampler.integrator != "mlt"; });
+    EXPECT_TRUE(references == 4 || !form.not_sampled.empty()) << form.name;
     if (!form.not_sampled.empty())
       std::printf("%-34s without %s\n", form.name.c_str(), form.not_sampled.c_str());
   }
