@@ -27,15 +27,7 @@ class Caustic final : public Mutation<PathSample> {
   }
 
   Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
-    const Scene& scene = x.scene();
-    y = x;
-    const Segment segment = *last_segment(scene, x.path());
-    const Vec3 w = *perturb_departure(x, segment, kAngles, rng);
-    if (const auto why = retrace(scene, y.path(), segment, w)) return refuse(*why);
-    if (const auto why = complete_segment(y, segment, segment.anchor)) return refuse(*why);
-    return {std::log(segment_density(scene, x.path(), segment) /
-                     segment_density(scene, y.path(), segment)),
-            std::nullopt};
+    return perturb_segment(x, y, *last_segment(x.scene(), x.path()), kAngles, rng);
   }
 
  private:

@@ -39,4 +39,16 @@ double departure_density(const Scene& scene, const MeasuredPath& x, const Segmen
   return i == x.last() ? density * x.scattering(i).pdf_to_light : density;
 }
 
+Proposal perturb_segment(const PathSample& x, PathSample& y, const Segment& segment,
+                         const StepSizes& angles, Rng& rng) {
+  const Scene& scene = x.scene();
+  y = x;
+  const Vec3 w = *perturb_departure(x, segment, angles, rng);
+  if (const auto why = retrace(scene, y.path(), segment, w)) return refuse(*why);
+  if (const auto why = complete_segment(y, segment, segment.anchor)) return refuse(*why);
+  return {std::log(segment_density(scene, x.path(), segment) /
+                   segment_density(scene, y.path(), segment)),
+          std::nullopt};
+}
+
 }  // namespace fogbow

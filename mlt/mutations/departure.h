@@ -15,4 +15,8 @@ std::optional<Vec3> perturb_departure(const PathSample& x, const Segment& segmen
 /// symmetric.
 double departure_density(const Scene& scene, const MeasuredPath& x, const Segment& segment);
 
+/// Moves one segment from an anchor other than the sensor: perturbs, re-traces and joins it.
+Proposal perturb_segment(const PathSample& x, PathSample& y, const Segment& segment,
+                         const StepSizes& angles, Rng& rng);
+
 }  // namespace fogbow

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mlt/manifold/walk.h"
+#include "mlt/mutations/candidates.h"
 #include "mlt/mutations/departure.h"
 #include "mlt/mutations/path_mutations.h"
 
@@ -32,9 +33,7 @@ void for_each_move(const Scene& scene, const MeasuredPath& x, Visit&& visit) {
 }
 
 int count(const PathSample& x) {
-  int n = 0;
-  for_each_move(x.scene(), x.path(), [&](const Move&) { ++n; });
-  return n;
+  return count_candidates([&](auto&& visit) { for_each_move(x.scene(), x.path(), visit); });
 }
 
 class Manifold final : public Mutation<PathSample> {
@@ -50,11 +49,8 @@ class Manifold final : public Mutation<PathSample> {
     MeasuredPath& path = y.path();
     const int candidates = count(x);
     const int chosen = static_cast<int>(rng.uniform() * candidates);
-    Move move{};
-    int n = 0;
-    for_each_move(scene, x.path(), [&](const Move& m) {
-      if (n++ == chosen) move = m;
-    });
+    const auto move =
+        candidate<Move>(chosen, [&](auto&& visit) { for_each_move(scene, x.path(), visit); });
     y = x;
     const auto w = perturb_departure(x, move.traced, kAngles, rng);
     if (!w) return refuse(Rejection::OffFilm);

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/mutations/candidates.h"
 #include "mlt/mutations/held_ray.h"
 #include "mlt/mutations/path_mutations.h"
 
@@ -10,9 +11,7 @@ constexpr std::string_view kKinds[] = {"volume-volume", "volume-surface", "surfa
 enum Kind { Within, ToWall, OffWall };
 
 int count(const PathSample& x) {
-  int n = 0;
-  for_each_held_vertex(x.path(), false, [&](const HeldVertex&) { ++n; });
-  return n;
+  return count_candidates([&](auto&& visit) { for_each_held_vertex(x.path(), false, visit); });
 }
 
 /// Σ over channels of the kernel K from distance `from` to `to`, both ends being the wall where
@@ -41,11 +40,8 @@ class Propagation final : public Mutation<PathSample> {
     const Scene& scene = x.scene();
     const int candidates = count(x);
     const int chosen = static_cast<int>(rng.uniform() * candidates);
-    HeldVertex held{};
-    int n = 0;
-    for_each_held_vertex(x.path(), false, [&](const HeldVertex& h) {
-      if (n++ == chosen) held = h;
-    });
+    const auto held = candidate<HeldVertex>(
+        chosen, [&](auto&& visit) { for_each_held_vertex(x.path(), false, visit); });
     thread_local HeldRay ray;
     Kind kind = x.path()[held.vertex].in_medium() ? Within : OffWall;
     if (!ray.trace(scene, x.path(), held)) return refuse(Rejection::NotReversible, kind);

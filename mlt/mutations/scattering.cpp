@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/mutations/candidates.h"
 #include "mlt/mutations/departure.h"
 #include "mlt/mutations/path_mutations.h"
 
@@ -28,27 +29,15 @@ class ScatteringPerturbation final : public Mutation<PathSample> {
 
   /// One of the segments, of which ȳ has the same.
   Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
-    const Scene& scene = x.scene();
-    y = x;
     const int chosen = static_cast<int>(rng.uniform() * count(x));
-    Segment segment{};
-    int n = 0;
-    for_each_segment(scene, x.path(), [&](const Segment& s) {
-      if (n++ == chosen) segment = s;
-    });
-    const Vec3 w = *perturb_departure(x, segment, kAngles, rng);
-    if (const auto why = retrace(scene, y.path(), segment, w)) return refuse(*why);
-    if (const auto why = complete_segment(y, segment, segment.anchor)) return refuse(*why);
-    return {std::log(segment_density(scene, x.path(), segment) /
-                     segment_density(scene, y.path(), segment)),
-            std::nullopt};
+    const auto segment = candidate<Segment>(
+        chosen, [&](auto&& visit) { for_each_segment(x.scene(), x.path(), visit); });
+    return perturb_segment(x, y, segment, kAngles, rng);
   }
 
  private:
   static int count(const PathSample& x) {
-    int n = 0;
-    for_each_segment(x.scene(), x.path(), [&](const Segment&) { ++n; });
-    return n;
+    return count_candidates([&](auto&& visit) { for_each_segment(x.scene(), x.path(), visit); });
   }
 
   double weight_;

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/math/warp.h"
 #include "mlt/manifold/walk.h"
+#include "mlt/mutations/candidates.h"
 #include "mlt/mutations/held_ray.h"
 #include "mlt/mutations/path_mutations.h"
 
@@ -38,9 +39,7 @@ void for_each_flip(const MeasuredPath& x, Visit&& visit) {
 }
 
 int count(const PathSample& x) {
-  int n = 0;
-  for_each_flip(x.path(), [&](const HeldVertex&) { ++n; });
-  return n;
+  return count_candidates([&](auto&& visit) { for_each_flip(x.path(), visit); });
 }
 
 /// Law q(t) of the distance at which a vertex leaves the wall: free flight that does not reach the
@@ -98,11 +97,8 @@ class Switch final : public Mutation<PathSample> {
     const Scene& scene = x.scene();
     const int candidates = count(x);
     const int chosen = static_cast<int>(rng.uniform() * candidates);
-    HeldVertex held{};
-    int n = 0;
-    for_each_flip(x.path(), [&](const HeldVertex& h) {
-      if (n++ == chosen) held = h;
-    });
+    const auto held =
+        candidate<HeldVertex>(chosen, [&](auto&& visit) { for_each_flip(x.path(), visit); });
     const int kind = kind_of(x.path(), held);
     const bool into_medium = !x.path()[held.vertex].in_medium();
     const Segment far = far_segment(x.path(), held);
