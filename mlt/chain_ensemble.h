@@ -69,7 +69,10 @@ class ChainEnsemble {
   /// Every chain goes on until it has made `steps(chain)` steps in all.
   void run(const std::function<std::uint64_t(std::size_t)>& steps, Film& film) {
     parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
-      while (chains_[i]->steps() < steps(i)) step(i, film);
+      SplatQueue splats(film);
+      const std::uint64_t goal = steps(i);
+      while (chains_[i]->steps() < goal) step(i, splats);
+      splats.flush();
     });
   }
 
@@ -77,16 +80,18 @@ class ChainEnsemble {
   void finish(Film& film) {
     parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
       Rng rng(seed_, RngDomain::Film, static_cast<std::uint64_t>(i), chains_[i]->steps());
-      chains_[i]->leave(splatter(i, rng, film));
+      SplatQueue splats(film);
+      chains_[i]->leave(splatter(i, rng, splats));
+      splats.flush();
     });
   }
 
-  StepInfo step(std::size_t i, Film& film) {
+  StepInfo step(std::size_t i, SplatQueue& splats) {
     Chain<State>& chain = *chains_[i];
     Rng rng(seed_, RngDomain::Chain, i, chain.steps());
     const bool timed = chain.steps() % kTimedStep == 0;
     const auto start = timed ? Clock::now() : Clock::time_point();
-    const StepInfo info = chain.step(table_, rng, splatter(i, rng, film));
+    const StepInfo info = chain.step(table_, rng, splatter(i, rng, splats));
     if (timed)
       chain.time(info.mutation, std::chrono::duration<double>(Clock::now() - start).count());
     if (table_[info.mutation]->independent()) {
@@ -127,13 +132,13 @@ class ChainEnsemble {
   /// One step in so many is timed: the clock costs a part of a step.
   static constexpr std::uint64_t kTimedStep = 61;
 
-  auto splatter(std::size_t i, Rng& offsets, Film& film) {
-    return [this, i, &offsets, &film](const State& x, double weight) {
+  auto splatter(std::size_t i, Rng& offsets, SplatQueue& splats) {
+    return [this, i, &offsets, &splats](const State& x, double weight) {
       ChainRecord& record = records_[i];
       double f_star = 0;  // in the unit of the contributions
       for (const Contribution& c : x.contributions()) f_star += luminance(c.value);
       for (const Contribution& c : x.contributions()) {
-        film.splat(c.raster, c.value * (weight / f_star), group_of(i), uniform2(offsets));
+        splats.splat(c.raster, c.value * (weight / f_star), group_of(i), uniform2(offsets));
         record.gather(c.k, luminance(c.value) / f_star);
       }
       record.settle(weight);

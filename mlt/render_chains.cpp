@@ -227,7 +227,7 @@ void diagnose(const Render& r, double render_seconds, RenderResult& result) {
   if (r_hat == 0) return;
   result.diagnostics["R_hat"] = r_hat;
   result.diagnostics["ess"] = ess;
-  result.diagnostics["ess_per_second"] = ess / std::fmax(render_seconds, 1e-9);
+  result.diagnostics["ess_per_second"] = ess / std::max(render_seconds, 1e-9);
 }
 
 template <class Chains>
@@ -305,12 +305,13 @@ std::string replay_by(const Scene& scene, const RenderSettings& settings, std::u
                       std::uint64_t chain, std::uint64_t step) {
   ChainRender<Chains> r(scene, settings, seed);
   Film film(scene.film(), kChainFilmExponent);
-  while (r.ensemble.chain(chain).steps() < step) r.ensemble.step(chain, film);
+  SplatQueue unseen(film);
+  while (r.ensemble.chain(chain).steps() < step) r.ensemble.step(chain, unseen);
 
   std::ostringstream out;
   out.precision(17);
   print_state(out, "current", r.ensemble.chain(chain).state());
-  const StepInfo info = r.ensemble.step(chain, film);
+  const StepInfo info = r.ensemble.step(chain, unseen);
   const auto& c = r.ensemble.chain(chain);
   // A refused proposal may be half written.
   if (!info.proposal.rejection)

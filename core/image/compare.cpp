@@ -190,7 +190,7 @@ class Comparison {
         result_.chi2 += sqr(t.z);
         above_2 += std::fabs(t.z) > 2;
         above_3 += std::fabs(t.z) > 3;
-        result_.max_abs_z = std::fmax(result_.max_abs_z, std::fabs(t.z));
+        result_.max_abs_z = std::max(result_.max_abs_z, std::fabs(t.z));
       }
     if (result_.tested_tiles == 0) return;
     result_.fraction_above_2 = static_cast<double>(above_2) / result_.tested_tiles;

@@ -153,22 +153,36 @@ std::int64_t Film::to_count(double value) const {
   return std::llrint(counts);
 }
 
-void Film::splat(const Vec2& raster, const RGB& value, int group, const Vec2& u) {
+std::optional<Film::Placed> Film::place(const Vec2& raster, const RGB& value, int group,
+                                        const Vec2& u) {
   if (!is_finite(value) || !std::isfinite(raster.x) || !std::isfinite(raster.y)) {
     refused_.fetch_add(1, std::memory_order_relaxed);
-    return;
+    return std::nullopt;
   }
   FOGBOW_CHECK(raster.x >= 0 && raster.x < 1 && raster.y >= 0 && raster.y < 1);
   FOGBOW_CHECK(group >= 0 && group < kGroups);
-  if (is_black(value)) return;
+  if (is_black(value)) return std::nullopt;
   const auto column = choose(*settings_.filter, column_mass_, raster.x * settings_.crop_width, u.x);
   const auto row = choose(*settings_.filter, row_mass_, raster.y * settings_.crop_height, u.y);
-  if (column.pixel < 0 || row.pixel < 0) return;
+  if (column.pixel < 0 || row.pixel < 0) return std::nullopt;
   const RGB weighted = (column.weight * row.weight) * value;
-  const std::size_t pixel =
-      static_cast<std::size_t>(row.pixel) * settings_.crop_width + column.pixel;
-  for (int c = 0; c < 3; ++c) add_or_throw(rgb_[3 * pixel + c], to_count(weighted[c]));
-  add_or_throw(group_[kGroups * pixel + group], to_count(luminance(weighted)));
+  Placed placed;
+  placed.pixel = static_cast<std::size_t>(row.pixel) * settings_.crop_width + column.pixel;
+  placed.group = group;
+  __builtin_prefetch(&rgb_[3 * placed.pixel], 1);
+  __builtin_prefetch(&group_[group_place(placed)], 1);
+  for (int c = 0; c < 3; ++c) placed.rgb[c] = to_count(weighted[c]);
+  placed.luminance = to_count(luminance(weighted));
+  return placed;
+}
+
+void Film::add(const Placed& splat) {
+  for (int c = 0; c < 3; ++c) add_or_throw(rgb_[3 * splat.pixel + c], splat.rgb[c]);
+  add_or_throw(group_[group_place(splat)], splat.luminance);
+}
+
+std::size_t Film::group_place(const Placed& splat) const {
+  return splat.group * (rgb_.size() / 3) + splat.pixel;
 }
 
 namespace {
@@ -229,7 +243,7 @@ void Film::add_error_layers(Image& image, double scale,
     std::array<double, kGroups> e;
     double mean = 0, sum = 0;
     for (int g = 0; g < kGroups; ++g) {
-      e[g] = unit * group_scale[g] * static_cast<double>(group_[kGroups * p + g].load());
+      e[g] = unit * group_scale[g] * static_cast<double>(group_[g * pixels + p].load());
       mean += share[g] * e[g];
     }
     for (int g = 0; g < kGroups; ++g) sum += share[g] * sqr(e[g] - mean);

@@ -1,9 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <array>
 #include <atomic>
 #include <cstdint>
 #include <iosfwd>
 #include <memory>
+#include <optional>
 #include <vector>
 
 #include "core/image/filter.h"
@@ -33,7 +35,21 @@ class Film {
   /// Adds to the one pixel that the reconstruction filter, importance-sampled by `u`, chooses
   /// around `raster` (in [0,1)² of the crop window). `group` in [0, kGroups) is the independent
   /// replicate that the splat belongs to.
-  void splat(const Vec2& raster, const RGB& value, int group, const Vec2& u);
+  void splat(const Vec2& raster, const RGB& value, int group, const Vec2& u) {
+    if (const auto placed = place(raster, value, group, u)) add(*placed);
+  }
+
+  /// A splat's pixel and counts, before they are added.
+  struct Placed {
+    std::size_t pixel = 0;
+    int group = 0;
+    std::array<std::int64_t, 3> rgb{};
+    std::int64_t luminance = 0;
+  };
+  /// Nothing where the splat is black, refused, or reaches no pixel; the pixel's sums are fetched
+  /// into the cache meanwhile.
+  std::optional<Placed> place(const Vec2& raster, const RGB& value, int group, const Vec2& u);
+  void add(const Placed& splat);
 
   /// Adds another film of the same settings and unit; throws Error(Usage) on any other.
   void add(const Film& other);
@@ -63,6 +79,7 @@ class Film {
 
  private:
   void set_unit(int exponent);
+  std::size_t group_place(const Placed& splat) const;
   std::int64_t to_count(double value) const;
   void add_error_layers(Image& image, double scale, const std::vector<double>& group_scale) const;
 
@@ -72,8 +89,29 @@ class Film {
   std::vector<double> column_mass_,
       row_mass_;  ///< Z_j = column × row: the part of a pixel's filter on the crop window
   std::vector<std::atomic<std::int64_t>> rgb_;    ///< 3 a pixel
-  std::vector<std::atomic<std::int64_t>> group_;  ///< luminance, kGroups a pixel
+  std::vector<std::atomic<std::int64_t>> group_;  ///< luminance, one group after the other
   std::atomic<std::uint64_t> refused_{0};
+};
+
+/// Splats of one thread on their way: sums that are not in the cache cost a wait each, unless they
+/// are asked for some splats ahead. What was not flushed is lost.
+class SplatQueue {
+ public:
+  explicit SplatQueue(Film& film) : film_(film) {}
+
+  void splat(const Vec2& raster, const RGB& value, int group, const Vec2& u) {
+    if (size_ == queue_.size()) flush();
+    if (const auto placed = film_.place(raster, value, group, u)) queue_[size_++] = *placed;
+  }
+  void flush() {
+    for (std::size_t i = 0; i < size_; ++i) film_.add(queue_[i]);
+    size_ = 0;
+  }
+
+ private:
+  Film& film_;
+  std::array<Film::Placed, 32> queue_;
+  std::size_t size_ = 0;
 };
 
 }  // namespace fogbow

@@ -36,7 +36,7 @@ class TentFilter final : public ReconstructionFilter {
   explicit TentFilter(double radius) : radius_(require_positive(radius, "radius")) {}
   double radius() const override { return radius_; }
   double evaluate(double x) const override {
-    return std::fmax(0.0, 1 - std::fabs(x) / radius_) / radius_;
+    return std::max(0.0, 1 - std::fabs(x) / radius_) / radius_;
   }
   double integral(double x) const override {
     const double t = std::clamp(x / radius_, -1.0, 1.0);
@@ -58,7 +58,7 @@ class GaussianFilter final : public ReconstructionFilter {
         norm_(1 / raw_integral(radius_)) {}
   double radius() const override { return radius_; }
   double evaluate(double x) const override {
-    return norm_ * std::fmax(0.0, std::exp(-0.5 * sqr(x / stddev_)) - offset_);
+    return norm_ * std::max(0.0, std::exp(-0.5 * sqr(x / stddev_)) - offset_);
   }
   double integral(double x) const override {
     return norm_ * raw_integral(std::clamp(x, -radius_, radius_));
