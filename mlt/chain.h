@@ -99,10 +99,10 @@ class Chain {
   /// weights: the proposal's a, and the current state's gathered 1 − a when the chain leaves it.
   template <class Splat>
   StepInfo step(const MutationTable<State>& table, Rng& rng, Splat&& splat) {
-    StepInfo info;
-    info.mutation = selection_x_.choose(rng.uniform());
-    info.log_f_star_x = x_.log_f_star();
-    info.proposal = table[info.mutation]->propose(x_, y_, rng);
+    const std::size_t mutation = selection_x_.choose(rng.uniform());
+    StepInfo info{.mutation = mutation,
+                  .proposal = table[mutation]->propose(x_, y_, rng),
+                  .log_f_star_x = x_.log_f_star()};
     if (!info.proposal.rejection) {
       info.log_f_star_y = y_.log_f_star();
       if (info.log_f_star_y == -std::numeric_limits<double>::infinity())
@@ -137,7 +137,7 @@ class Chain {
   /// a(x̄→ȳ) = min{1, f*(ȳ)π(ȳ)T(ȳ→x̄;r*) / (f*(x̄)π(x̄)T(x̄→ȳ;r))}.
   static double acceptance(const StepInfo& info) {
     const double log_ratio = info.log_f_star_y - info.log_f_star_x + info.proposal.log_ratio;
-    return std::fmin(1.0, info.selection_y / info.selection_x * std::exp(log_ratio));
+    return std::min(1.0, info.selection_y / info.selection_x * std::exp(log_ratio));
   }
 
   /// Splats what the current state has gathered; at the end of a run.

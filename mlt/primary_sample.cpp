@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mlt/primary_sample.h"
 
+#include <algorithm>
+
 #include "core/util/binary_io.h"
 
 namespace fogbow {
@@ -47,7 +49,7 @@ double perturb_primary_sample(double value, double u) {
   double moved = up ? value + offset : value - offset;
   if (moved >= 1) moved -= 1;
   if (moved < 0) moved += 1;
-  return std::fmin(moved, kOneMinusEpsilon);
+  return std::min(moved, kOneMinusEpsilon);
 }
 
 void PrimarySample::evaluate(const Estimator& estimator, SampleStream& light, SampleStream& eye) {

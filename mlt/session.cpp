@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mlt/session.h"
 
+#include <algorithm>
 #include <ctime>
 
 #include "core/path/transport.h"
@@ -53,12 +54,12 @@ void Session::report(std::uint64_t samples, double b, double b_stderr,
     p.stage = "render";
     p.seconds = seconds();
     p.samples_per_pixel = static_cast<double>(samples) / pixels_;
-    p.samples_per_second = static_cast<double>(samples) / std::fmax(render_seconds(), 1e-9);
+    p.samples_per_second = static_cast<double>(samples) / std::max(render_seconds(), 1e-9);
     p.b = b;
     p.b_stderr = b_stderr;
     if (target_ > 0) p.fraction = static_cast<double>(samples) / target_;
-    if (options_.seconds) p.fraction = std::fmax(p.fraction, p.seconds / *options_.seconds);
-    p.fraction = std::fmin(p.fraction, 1.0);
+    if (options_.seconds) p.fraction = std::max(p.fraction, p.seconds / *options_.seconds);
+    p.fraction = std::min(p.fraction, 1.0);
     options_.on_progress(p);
   }
   const bool due =

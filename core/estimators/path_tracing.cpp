@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "core/estimators/estimator.h"
 #include "core/math/warp.h"
 
@@ -68,7 +70,7 @@ warp::Equiangular PathTracer::equiangular_law(const Flight& flight, const Vec3& 
   const double height = length(light - flight.x.position() - foot * flight.w);
   const double exit =
       dot(scene_.bounds().center() - flight.x.position(), flight.w) + scene_.radius();
-  return {foot, height, flight.t_min, std::fmin(flight.t_max, exit)};
+  return {foot, height, flight.t_min, std::min(flight.t_max, exit)};
 }
 
 double PathTracer::share(const Flight& flight, const Arrival& at, const Vertex& light) const {
@@ -127,7 +129,7 @@ bool PathTracer::scatter_on(const Arrival& at, SampleStream& eye, Flight& flight
     // No cap below one: where little is absorbed, dividing by it would let throughputs, and their
     // variance, grow with every bounce.
     const double survival =
-        std::fmin(1.0, max_component(flight.throughput) * flight.index_ratio_squared);
+        std::min(1.0, max_component(flight.throughput) * flight.index_ratio_squared);
     if (!(u_roulette < survival)) return false;
     flight.throughput /= survival;
   }

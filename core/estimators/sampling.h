@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <algorithm>
 #include <array>
 #include <vector>
 
@@ -71,7 +72,7 @@ class PixelStream final : public SampleStream {
     const double u = rng_.uniform();
     if (count_ >= 2) return u;
     const int axis = count_++;
-    return std::fmin(corner_[axis] + u * size_[axis], kOneMinusEpsilon);
+    return std::min(corner_[axis] + u * size_[axis], kOneMinusEpsilon);
   }
 
  private:

@@ -296,7 +296,7 @@ struct Accel::Impl {
     double start = ray.t_min;
     // From afar: begin near the scene, where single precision can tell things apart.
     if (length_squared(ray(start) - center) > sqr(4 * radius))
-      start = std::fmin(std::fmax(start, dot(center - ray.o, ray.d) - 2 * radius), ray.t_max);
+      start = std::min(std::max(start, dot(center - ray.o, ray.d) - 2 * radius), ray.t_max);
     query.base = start - shift;
     const glm::vec3 origin(ray(query.base)), d(ray.d);
     const float length = static_cast<float>(ray.t_max - query.base + shift);

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/geometry/sphere.h"
 
+#include <algorithm>
 #include <glm/common.hpp>
 #include <map>
 #include <stdexcept>
@@ -60,7 +61,7 @@ SurfacePoint Sphere::surface_point(std::uint32_t, const Vec2& local) const {
   x.position = center_ + radius_ * n;
   x.n_g = flip_ ? -n : n;
   x.shading = Frame(x.n_g);
-  x.uv = {local.x, std::acos(std::fmin(std::fmax(n.z, -1.0), 1.0)) * kInvPi};
+  x.uv = {local.x, std::acos(std::min(std::max(n.z, -1.0), 1.0)) * kInvPi};
   x.local = local;
   return x;
 }
@@ -114,7 +115,7 @@ std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius, bool
 bool Sphere::avoids(std::uint32_t, const Bounds& box) const {
   const Vec3 nearest = glm::clamp(center_, box.lo, box.hi);
   double farthest = 0;
-  for (const Vec3& corner : box.corners()) farthest = std::fmax(farthest, length(corner - center_));
+  for (const Vec3& corner : box.corners()) farthest = std::max(farthest, length(corner - center_));
   return length(nearest - center_) > radius_ || farthest < radius_;
 }
 

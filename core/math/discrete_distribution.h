@@ -37,7 +37,7 @@ class DiscreteDistribution {
   }
   /// A u with sample(u) = i, uniform on its interval by `auxiliary`.
   double invert(std::size_t i, double auxiliary) const {
-    return std::fmin(cdf_[i] + auxiliary * probability(i), kOneMinusEpsilon);
+    return std::min(cdf_[i] + auxiliary * probability(i), kOneMinusEpsilon);
   }
 
  private:

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <algorithm>
 #include <cmath>
 #include <glm/geometric.hpp>
 #include <glm/mat3x3.hpp>
@@ -34,7 +35,7 @@ inline constexpr double kOneMinusEpsilon = 0x1.fffffffffffffp-1;
 
 inline double sqr(double x) { return x * x; }
 inline double length_squared(const Vec3& v) { return dot(v, v); }
-inline double max_component(const Vec3& v) { return std::fmax(v.x, std::fmax(v.y, v.z)); }
+inline double max_component(const Vec3& v) { return std::max(v.x, std::max(v.y, v.z)); }
 inline double mean(const RGB& c) { return (c.x + c.y + c.z) / 3; }
 inline bool is_black(const RGB& c) { return c.x == 0 && c.y == 0 && c.z == 0; }
 inline bool is_finite(const Vec3& v) {

@@ -9,13 +9,13 @@
 /// numbers in [0,1).
 namespace fogbow::warp {
 
-inline double clamp_unit(double u) { return std::fmin(std::fmax(u, 0.0), kOneMinusEpsilon); }
+inline double clamp_unit(double u) { return std::min(std::max(u, 0.0), kOneMinusEpsilon); }
 
 /// Uniform on [lo, hi) by `auxiliary`: the primary sample of a choice that owns this interval;
 /// needs lo < hi.
 inline double invert_interval(double lo, double hi, double auxiliary) {
   const double below = hi >= 1 ? kOneMinusEpsilon : std::nextafter(hi, 0.0);
-  return std::fmin(std::fmax(lo + auxiliary * (hi - lo), lo), below);
+  return std::min(std::max(lo + auxiliary * (hi - lo), lo), below);
 }
 
 /// Azimuth of (x, y) as a fraction of the full turn.
@@ -26,7 +26,7 @@ inline double invert_azimuth(double x, double y) {
 
 /// Unit vector with 1 − cosθ = d: exact at the pole, where 1 − (1 − d)² is not.
 inline Vec3 spherical_direction(double d, double azimuth) {
-  const double sin_theta = std::sqrt(std::fmax(d * (2 - d), 0.0));
+  const double sin_theta = std::sqrt(std::max(d * (2 - d), 0.0));
   const double phi = 2 * kPi * azimuth;
   return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), 1 - d};
 }
@@ -47,7 +47,7 @@ struct Concentric {
 };
 
 inline Concentric concentric(const Vec2& u) {
-  const Vec2 rim(std::fmin(u.x, 1 - u.x), std::fmin(u.y, 1 - u.y));
+  const Vec2 rim(std::min(u.x, 1 - u.x), std::min(u.y, 1 - u.y));
   const Vec2 a(2 * u.x - 1, 2 * u.y - 1);
   if (rim.x <= rim.y) {
     if (a.x == 0) return {Vec2(0), 1};
@@ -82,7 +82,7 @@ inline Vec3 sample_cosine_hemisphere(const Vec2& u) {
   const auto [p, rim] = detail::concentric(u);
   return {p.x, p.y, std::sqrt(rim * (2 - rim))};
 }
-inline double pdf_cosine_hemisphere(const Vec3& w) { return std::fmax(w.z, 0.0) * kInvPi; }
+inline double pdf_cosine_hemisphere(const Vec3& w) { return std::max(w.z, 0.0) * kInvPi; }
 inline Vec2 invert_cosine_hemisphere(const Vec3& w) {
   const Vec2 p(w.x, w.y);
   return detail::invert_concentric(p, w.z * w.z / (1 + length(p)));
@@ -170,11 +170,11 @@ struct FreeFlight {
   /// Nothing: the wall.
   std::optional<double> sample(double u) const {
     if (u >= medium_mass()) return std::nullopt;
-    return std::fmin(-std::log1p(-u) / sigma_t, std::nextafter(T, 0.0));
+    return std::min(-std::log1p(-u) / sigma_t, std::nextafter(T, 0.0));
   }
   double pdf(double t) const { return sigma_t * std::exp(-sigma_t * t); }
   double invert(double t) const {
-    return std::fmin(-std::expm1(-sigma_t * t), std::nextafter(medium_mass(), 0.0));
+    return std::min(-std::expm1(-sigma_t * t), std::nextafter(medium_mass(), 0.0));
   }
   /// Nothing where the wall's mass is lost to rounding (σ_t T > 36).
   std::optional<double> invert_wall(double auxiliary) const {
@@ -190,7 +190,7 @@ struct TruncatedExponential {
 
   double sample(double u) const {
     if (is_uniform()) return u * T;
-    return std::fmin(-std::log1p(u * std::expm1(-sigma_t * T)) / sigma_t, std::nextafter(T, 0.0));
+    return std::min(-std::log1p(u * std::expm1(-sigma_t * T)) / sigma_t, std::nextafter(T, 0.0));
   }
   double pdf(double t) const {
     if (is_uniform()) return 1 / T;
@@ -217,7 +217,7 @@ struct Equiangular {
   double sample(double u) const {
     const double total = angle();
     const double t = u < 0.5 ? from_start(u * total) : from_end(u * total, (1 - u) * total);
-    return std::fmin(std::fmax(t, t0), t1);
+    return std::min(std::max(t, t0), t1);
   }
   double pdf(double t) const {
     return distance / (angle() * (distance * distance + sqr(t - foot)));

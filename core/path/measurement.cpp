@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/path/measurement.h"
 
+#include <algorithm>
+
 namespace fogbow {
 
 namespace {
@@ -31,7 +33,7 @@ LocalDirections localize(const SurfacePoint& p, const Vec3& w_light, const Vec3&
 /// its neighbours, so that densities stay functions of the path.
 double survival(const RGB& f, double cos_to, double pdf, double index_ratio_squared) {
   if (!(pdf > 0)) return 0;
-  return std::fmin(1.0, max_component(f) * cos_to / pdf * index_ratio_squared);
+  return std::min(1.0, max_component(f) * cos_to / pdf * index_ratio_squared);
 }
 
 Scattering scatter_surface(const Scene& scene, const Vertex& x, const Vec3& w_light,
@@ -61,7 +63,7 @@ Scattering scatter_medium(const Vertex& x, const Vec3& w_light, const Vec3& w_ey
   const RGB f_p = phase.f_p(w_light, w_eye);
   double albedo = 0;
   for (int c = 0; c < 3; ++c)
-    if (sigma_t[c] > 0) albedo = std::fmax(albedo, sigma_s[c] / sigma_t[c]);
+    if (sigma_t[c] > 0) albedo = std::max(albedo, sigma_s[c] / sigma_t[c]);
   const double stay_to_light = behind_specular && albedo > 0 ? 1.0 : albedo;
   return {sigma_s * f_p, stay_to_light * phase.pdf_sigma(w_eye, w_light),
           albedo * phase.pdf_sigma(w_light, w_eye), stay_to_light, albedo};

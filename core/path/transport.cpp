@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "core/path/transport.h"
 
+#include <algorithm>
 #include <atomic>
 #include <mutex>
 #include <set>
@@ -193,7 +194,7 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
     }
     if (is_sampled(medium))
       flight.remaining -= medium->optical_depth(ray, ray.t_min, t)[flight.channel];
-    flight.remaining = std::fmax(flight.remaining, 0.0);
+    flight.remaining = std::max(flight.remaining, 0.0);
     medium = behind(surface, point, w, medium);
     ray.t_min = t;
     from = hit->id;
@@ -234,7 +235,7 @@ const RayProfile::Section& RayProfile::section_at(double t) const {
 RGB RayProfile::tau_q(double t) const {
   const Section& s = section_at(t);
   if (!is_sampled(s.medium)) return s.tau_q;
-  return s.tau_q * transmittance(s.medium->optical_depth(ray_, s.begin, std::fmin(t, s.end)));
+  return s.tau_q * transmittance(s.medium->optical_depth(ray_, s.begin, std::min(t, s.end)));
 }
 
 std::optional<double> RayProfile::distance(int channel, double u) const {
@@ -244,7 +245,7 @@ std::optional<double> RayProfile::distance(int channel, double u) const {
   const Section& s = sections_[i];
   if (!is_sampled(s.medium)) return std::nullopt;
   const double depth = std::log(s.tau_q[channel]) - std::log1p(-u);
-  return s.medium->distance(ray_, s.begin, s.end, channel, std::fmax(depth, 0.0));
+  return s.medium->distance(ray_, s.begin, s.end, channel, std::max(depth, 0.0));
 }
 
 const Medium* RayProfile::scatters_at(double t) const {
@@ -267,11 +268,11 @@ Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary)
   double choice = auxiliary.x * (weights.x + weights.y + weights.z);
   int channel = 0;
   while (channel < 2 && choice >= weights[channel]) choice -= weights[channel++];
-  const double within = std::fmin(choice / weights[channel], kOneMinusEpsilon);
+  const double within = std::min(choice / weights[channel], kOneMinusEpsilon);
   const double absorbed = 1 - edge.tau_q[channel];
   // At a wall every u in (1 − τ, 1) leads there.
   const double u = end.in_medium() ? absorbed : absorbed + auxiliary.y * edge.tau_q[channel];
-  return {std::fmin((channel + within) / 3, kOneMinusEpsilon), std::fmin(u, kOneMinusEpsilon)};
+  return {std::min((channel + within) / 3, kOneMinusEpsilon), std::min(u, kOneMinusEpsilon)};
 }
 
 std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b) {

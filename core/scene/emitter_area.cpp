@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+
 #include "core/math/frame.h"
 #include "core/math/warp.h"
 #include "core/scene/emitter_radiance.h"
@@ -30,7 +32,7 @@ class AreaEmitter final : public Emitter {
     return {Frame(x.surface.n_g).to_world(w), x.surface.position, warp::pdf_cosine_hemisphere(w)};
   }
   double pdf_direction(const EmitterPoint& x, const Vec3& w) const override {
-    return std::fmax(dot(w, x.surface.n_g), 0.0) * kInvPi;
+    return std::max(dot(w, x.surface.n_g), 0.0) * kInvPi;
   }
   std::optional<Vec2> invert_direction(const EmitterPoint& x,
                                        const EmitterDirection& d) const override {

@@ -26,7 +26,7 @@ double normal_quantile_guess(double u) {
     return p * (2 * u - 1);
   }
   // Tail: erfc(t) ≈ e^{−t²}/(t√π).
-  const double q = std::fmin(u, 1 - u);
+  const double q = std::min(u, 1 - u);
   const double L = -std::log(2 * q);
   const double t = std::sqrt(L - 0.5 * std::log(kPi * L));
   return u < 0.5 ? -t : t;
@@ -34,7 +34,7 @@ double normal_quantile_guess(double u) {
 
 /// The y below which a standard Gaussian slope e^{−y²}/√π has mass u.
 double gaussian_slope(double u) {
-  u = std::fmax(u, kLeastSample);
+  u = std::max(u, kLeastSample);
   double y = normal_quantile_guess(u);
   for (int i = 0; i < 4; ++i) {  // Halley's steps for erfc
     const double side = y < 0 ? -1.0 : 1.0;
@@ -43,7 +43,7 @@ double gaussian_slope(double u) {
     const double newton = residual / (kInvSqrtPi * std::exp(-t * t));
     const double step = newton / (1 - t * newton);
     y += side * step;
-    if (std::fabs(step) < 1e-6 * std::fmax(t, 1.0)) break;  // the error left is its cube
+    if (std::fabs(step) < 1e-6 * std::max(t, 1.0)) break;  // the error left is its cube
   }
   return y;
 }
@@ -68,14 +68,14 @@ struct VisibleSlope {
 };
 
 double VisibleSlope::sample(double u) const {
-  u = std::fmax(u, kLeastSample);
+  u = std::max(u, kLeastSample);
   // The law grows with cotθ, from Rayleigh's at grazing incidence to the Gaussian at normal
   // incidence.
   constexpr double kGuessError = 0.1;
   const double gaussian = normal_quantile_guess(u);
   double lo = -std::sqrt(-std::log(u));
-  double hi = std::fmin(gaussian + kGuessError, sin_theta > 0 ? cos_theta / sin_theta : kInfinity);
-  double x = lo + cos_theta * (std::fmin(gaussian, hi) - lo);
+  double hi = std::min(gaussian + kGuessError, sin_theta > 0 ? cos_theta / sin_theta : kInfinity);
+  double x = lo + cos_theta * (std::min(gaussian, hi) - lo);
   const double target = u * mass;
   for (int i = 0; i < 64; ++i) {
     const double e = kInvSqrtPi * std::exp(-x * x);
@@ -90,7 +90,7 @@ double VisibleSlope::sample(double u) const {
       continue;
     }
     x -= step;
-    if (std::fabs(step) < 1e-6 * std::fmin(1.0, slope)) break;  // the error left is its cube
+    if (std::fabs(step) < 1e-6 * std::min(1.0, slope)) break;  // the error left is its cube
   }
   return x;
 }
@@ -99,7 +99,7 @@ double VisibleSlope::sample(double u) const {
 
 MicrofacetDistribution::MicrofacetDistribution(const RoughnessSettings& roughness)
     : kind_(roughness.kind),
-      alpha_(std::fmax(roughness.alpha_u, kLeastAlpha), std::fmax(roughness.alpha_v, kLeastAlpha)),
+      alpha_(std::max(roughness.alpha_u, kLeastAlpha), std::max(roughness.alpha_v, kLeastAlpha)),
       normalization_(kInvPi / (alpha_.x * alpha_.y)) {
   for (const double a : {roughness.alpha_u, roughness.alpha_v})
     if (!(a >= 0 && std::isfinite(a)))

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <algorithm>
+
 #include "core/math/vec.h"
 #include "core/scene/bsdf/bsdfs.h"
 
@@ -20,10 +22,10 @@ class MicrofacetDistribution {
 
   /// Of the normals seen from w (w_z > 0): D(h) G1(w) (w·h)₊ / w_z, in solid angle.
   double pdf_visible(const Vec3& w, const Vec3& h) const {
-    return D(h) * G1(w) * std::fmax(dot(w, h), 0.0) / w.z;
+    return D(h) * G1(w) * std::max(dot(w, h), 0.0) / w.z;
   }
   /// The larger α.
-  double roughness() const { return std::fmax(alpha_.x, alpha_.y); }
+  double roughness() const { return std::max(alpha_.x, alpha_.y); }
   Vec3 sample_visible(const Vec3& w, const Vec2& u) const;
   /// The u with sample_visible(w, u) = h.
   Vec2 invert_visible(const Vec3& w, const Vec3& h) const;
