@@ -33,7 +33,7 @@ const std::vector<Entry>& entries() {
       {"multichain", 2, simple<make_multichain>},
       {"scattering", 0.5, simple<make_scattering>},
       {"propagation", 0.6, simple<make_propagation>},
-      {"switch", 1, simple<make_switch>},
+      {"switch", 1.3, simple<make_switch>},
       {"manifold", 0.1, simple<make_manifold>},
       {"large_step", 0.8,
        [](double w, const TechniqueDistribution& t, int) { return make_large_step(w, t); }},

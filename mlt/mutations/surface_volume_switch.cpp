@@ -29,17 +29,21 @@ Segment far_segment(const MeasuredPath& x, const HeldVertex& h) {
   return {there.end, h.vertex, h.held};
 }
 
+/// Of choosing a flip that takes a walk, against a direct one: it costs many traced chains, and
+/// most of them are refused.
+constexpr double kWalkWeight = 1.0 / 8;
+
 template <class Visit>
 void for_each_flip(const MeasuredPath& x, Visit&& visit) {
   for_each_held_vertex(x, true, [&](const HeldVertex& h) {
-    if (!x[h.beyond()].degenerate) return visit(h);
+    if (!x[h.beyond()].degenerate) return visit(h, 1.0);
     const auto there = segment_from(x, h.vertex, h.held == Side::Light ? Side::Eye : Side::Light);
-    if (there && !x[there->end].infinite()) visit(h);
+    if (there && !x[there->end].infinite()) visit(h, kWalkWeight);
   });
 }
 
-int count(const PathSample& x) {
-  return count_candidates([&](auto&& visit) { for_each_flip(x.path(), visit); });
+double flip_weight(const PathSample& x) {
+  return total_weight([&](auto&& visit) { for_each_flip(x.path(), visit); });
 }
 
 /// Law q(t) of the distance at which a vertex leaves the wall: free flight that does not reach the
@@ -91,14 +95,15 @@ class Switch final : public Mutation<PathSample> {
   explicit Switch(double weight) : weight_(weight) {}
   const char* name() const override { return "switch"; }
   std::span<const std::string_view> kinds() const override { return kKinds; }
-  double selection_weight(const PathSample& x) const override { return count(x) > 0 ? weight_ : 0; }
+  double selection_weight(const PathSample& x) const override {
+    return weight_ * std::min(flip_weight(x), 1.0);
+  }
 
   Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
     const Scene& scene = x.scene();
-    const int candidates = count(x);
-    const int chosen = static_cast<int>(rng.uniform() * candidates);
-    const auto held =
-        candidate<HeldVertex>(chosen, [&](auto&& visit) { for_each_flip(x.path(), visit); });
+    const double weight = flip_weight(x);
+    const auto held = weighted_candidate<HeldVertex>(
+        rng.uniform() * weight, [&](auto&& visit) { for_each_flip(x.path(), visit); });
     const int kind = kind_of(x.path(), held);
     const bool into_medium = !x.path()[held.vertex].in_medium();
     const Segment far = far_segment(x.path(), held);
@@ -121,10 +126,12 @@ class Switch final : public Mutation<PathSample> {
     double log_reductions = 0;
     if (const auto why = reconnect(x, y, held, far, log_reductions)) return refuse(*why, kind);
 
-    // Densities in μ given the held ray; landing on the wall is certain.
+    // Densities in μ given the held ray, but for the candidate's own weight, which it keeps;
+    // landing on the wall is certain.
     const double q = law.q(t);
-    const double forward = (into_medium ? q : 1) / candidates * held_measure(scene, y.path(), held);
-    const double reverse = (into_medium ? 1 : q) / count(y) * held_measure(scene, x.path(), held);
+    const double forward = (into_medium ? q : 1) / weight * held_measure(scene, y.path(), held);
+    const double reverse =
+        (into_medium ? 1 : q) / flip_weight(y) * held_measure(scene, x.path(), held);
     return {std::log(reverse / forward) + log_reductions, std::nullopt, 0, kind};
   }
 

@@ -13,7 +13,7 @@
 namespace fogbow::testing {
 namespace {
 
-const int kSamples = std::getenv("FOGBOW_LONG") ? 1 << 19 : 1 << 15;
+const int kSamples = std::getenv("FOGBOW_LONG") ? 1 << 19 : 1 << 16;
 constexpr int kMaxDepth = 7, kBlock = 256;
 /// Steps from every path.
 constexpr int kSteps = 4;

@@ -132,6 +132,9 @@ std::vector<Held> held_vertices(const Scene& scene, const Path& path, bool flips
   return all;
 }
 
+/// Of choosing this vertex: flips whose far side takes a walk are eight times rarer.
+double weight(const Path& path, const Held& h) { return path[h.beyond()].degenerate ? 0.125 : 1; }
+
 /// The ray on which x's vertex moves, up to the wall.
 struct Line {
   Vec3 o, w;
@@ -281,9 +284,11 @@ std::vector<Way> held_ways(const Scene& scene, const Path& x, const Path& y, boo
       const double q = !flips                     ? kernel(Line(scene, from, h), there)
                        : to[h.vertex].in_medium() ? flip_density(there, to[h.far(to)])
                                                   : 1.0;
-      const auto choices = static_cast<double>(held_vertices(scene, from, flips).size());
+      double all_weights = 0;
+      for (const Held& other : held_vertices(scene, from, flips))
+        all_weights += weight(from, other);
       Measured sum = log_density(scene, to, {h.anchor(to), h.vertex});
-      return sum += {std::log(q / choices)};
+      return sum += {std::log(q * weight(from, h) / all_weights)};
     };
     const bool walks = x[h.beyond()].degenerate;
     all.push_back(way(scene, h.vertex, walks ? h.far(x) - h.step : h.vertex, x, y, log_T));
