@@ -127,8 +127,8 @@ Sampling sample(const Scene& scene, const Estimator& estimator, bool classified,
 Sampling render_chains(const Scene& scene, const std::string& integrator, int longest,
                        int replicates, std::uint64_t mutations, std::uint64_t seed) {
   // A short bootstrap's starts are biased as 1/samples, more than the errors here allow where the
-  // light is in few paths.
-  constexpr std::uint64_t kBootstrap = 1 << 15;
+  // light is in few paths; one of its samples takes as long as several mutations.
+  constexpr std::uint64_t kBootstrap = 1 << 15, kMutationsPerSample = 8;
   Replicates all(replicates, longest);
   const auto [width, height] = rendered_size(scene.film());
   const double pixels = static_cast<double>(width) * height;
@@ -137,7 +137,7 @@ Sampling render_chains(const Scene& scene, const std::string& integrator, int lo
   options.overrides = {
       {"max_depth", std::to_string(longest - 1)},
       {"chains", "8"},
-      {"luminance_samples", std::to_string(std::max<std::uint64_t>(kBootstrap, mutations))}};
+      {"luminance_samples", std::to_string(std::max(kBootstrap, mutations / kMutationsPerSample))}};
   options.samples_per_pixel = static_cast<double>(mutations) / pixels;
   for (int r = 0; r < replicates; ++r) {
     options.seed = seed + static_cast<std::uint64_t>(r) * 0x9E3779B97F4A7C15;
@@ -195,6 +195,7 @@ int expect_agreement(const std::string& name, const Replicates& a, const Replica
       "of a part is found with probability %.4f\n",
       name.c_str(), tests, least_p, b.mean().mean / a.mean().mean, 100 * precision.mean,
       100 * precision.part, least_power);
+  std::fflush(stdout);
   return tests;
 }
 

@@ -20,7 +20,8 @@ using namespace testing;
 
 constexpr int kLongest = 7;      // vertices
 constexpr int kReplicates = 64;  // of independent samples
-constexpr int kRuns = 24;        // of chains
+/// Of chains.
+const int kRuns = std::getenv("FOGBOW_LONG") ? 48 : 32;
 /// An upper bound on the tests of this file together; counted below.
 constexpr int kTests = 1400, kTestsOfOneScene = 130;
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
