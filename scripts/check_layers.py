@@ -31,7 +31,7 @@ CONFINED = [
     (r"CGAL/", r"core/geometry/mesh_check_cgal\.cpp"),
     (r"OpenImageIO/", r"core/image/image_io_oiio\.cpp"),
     (r"pugixml", r"core/scene_io/[a-z0-9_]+\.cpp"),
-    (r"ceres/", r"media/phase_fit_ceres\.cpp|mlt/manifold/.*"),
+    (r"ceres/|Eigen/", r"media/phase_fit_ceres\.cpp|mlt/manifold/.*|tests/.*"),
     (r"openvdb/", r"core/scene_io/[a-z0-9_]+\.cpp"),
     (r"CLI/", r"apps/.*"),
     (r"nlohmann/", r"apps/.*|tests/.*"),
