@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Usage: fogbow_benchmarks SCENE.xml... [Google Benchmark's flags]; every scene by rays alone, by
-// each estimator and by a chain.
+// each estimator and by chains, whose
+// mutations are split into the time inside Embree and the rest.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -16,6 +17,7 @@
 #include "mlt/normalization.h"
 #include "mlt/registry.h"
 #include "mlt/technique_distribution.h"
+#include "tests/benchmarks/embree_clock.h"
 
 namespace fogbow {
 namespace {
@@ -76,8 +78,7 @@ void estimate(benchmark::State& state, const Estimator& estimator) {
 }
 
 template <class State>
-void mutate(benchmark::State& state, const MutationTable<State>& table, State start) {
-  Chain<State> chain(std::move(start), table);
+void mutate(benchmark::State& state, const MutationTable<State>& table, Chain<State>& chain) {
   const std::uint64_t before = rays_traced();
   for (auto _ : state) {
     Rng rng(kSeed, RngDomain::Chain, 0, chain.steps());
@@ -93,18 +94,66 @@ void mutate(benchmark::State& state, const MutationTable<State>& table, State st
 }
 
 constexpr int kMaxDepth = 64;
+/// Of one mutation: so many, if they come within this time.
+constexpr int kProposals = 4000;
+constexpr double kMostSeconds = 10;
 
 void mutate_samples(benchmark::State& state, const Estimator& estimator) {
-  mutate(state, make_primary_sample_mutations(estimator, 0.3),
-         Bootstrap(estimator, kSeed, 2048).start(0, 0));
+  const auto table = make_primary_sample_mutations(estimator, 0.3);
+  Chain<PrimarySample> chain(Bootstrap(estimator, kSeed, 2048).start(0, 0), table);
+  mutate(state, table, chain);
 }
 
-/// All mutations of paths, or one alone with large steps (half of the steps each).
-void mutate_paths(benchmark::State& state, const Scene& scene, const Estimator& bdpt,
-                  const MutationWeights& weights) {
-  const TechniqueDistribution techniques(pilot_techniques(bdpt, kSeed, 1 << 14), kMaxDepth + 1);
-  mutate(state, make_path_mutations(weights, techniques, kMaxDepth + 1),
-         PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5));
+/// A chain of all mutations of paths.
+struct PathChain {
+  TechniqueDistribution techniques;
+  MutationTable<PathSample> table;
+  Chain<PathSample> chain;
+
+  PathChain(const Scene& scene, const Estimator& bdpt)
+      : techniques(pilot_techniques(bdpt, kSeed, 1 << 14), kMaxDepth + 1),
+        table(make_path_mutations(default_mutation_weights(), techniques, kMaxDepth + 1)),
+        chain(
+            PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5),
+            table) {}
+};
+
+void mutate_paths(benchmark::State& state, const Scene& scene, const Estimator& bdpt) {
+  PathChain c(scene, bdpt);
+  mutate(state, c.table, c.chain);
+}
+
+/// Of the steps of a chain of all mutations, those by one: as they come in a render.
+void mutate_by(benchmark::State& state, const Scene& scene, const Estimator& bdpt,
+               const std::string& mutation) {
+  PathChain c(scene, bdpt);
+  double all = 0;
+  EmbreeClock embree;
+  const auto deadline = precise_seconds() + kMostSeconds;
+  for (auto _ : state) {
+    for (bool done = false; !done;) {
+      Rng rng(kSeed, RngDomain::Chain, 0, c.chain.steps());
+      const EmbreeClock before = EmbreeClock::now();
+      const double start = precise_seconds();
+      const StepInfo step = c.chain.step(c.table, rng, [](const PathSample& x, double weight) {
+        benchmark::DoNotOptimize(x.contributions().data());
+        benchmark::DoNotOptimize(weight);
+      });
+      const double seconds = precise_seconds() - start;
+      if (start > deadline) return state.SkipWithError("hardly ever chosen here");
+      if (c.table[step.mutation]->name() != mutation) continue;
+      done = true;
+      const EmbreeClock spent = EmbreeClock::now() - before;
+      embree.seconds += spent.seconds;
+      embree.rays += spent.rays;
+      all += seconds;
+      state.SetIterationTime(seconds);
+    }
+  }
+  const auto n = static_cast<double>(state.iterations());
+  state.counters["rays"] = static_cast<double>(embree.rays) / n;
+  state.counters["us in Embree"] = 1e6 * embree.seconds / n;
+  state.counters["us rest"] = 1e6 * (all - embree.seconds) / n;
 }
 
 /// A scene with its estimators; all live until the program ends, as registered benchmarks refer to
@@ -121,7 +170,8 @@ struct Subject {
 
   void register_all(const std::string& name) {
     const auto add = [&](const char* what, auto&& run) {
-      benchmark::RegisterBenchmark((name + "/" + what).c_str(), run)->Unit(benchmark::kMicrosecond);
+      return benchmark::RegisterBenchmark((name + "/" + what).c_str(), run)
+          ->Unit(benchmark::kMicrosecond);
     };
     add("primary rays", [this](benchmark::State& s) { trace(s, scene, false); });
     add("bounce rays", [this](benchmark::State& s) { trace(s, scene, true); });
@@ -129,12 +179,14 @@ struct Subject {
     add("light", [this](benchmark::State& s) { estimate(s, *light); });
     add("bdpt", [this](benchmark::State& s) { estimate(s, *bdpt); });
     add("pssmlt", [this](benchmark::State& s) { mutate_samples(s, *bdpt); });
-    add("mlt",
-        [this](benchmark::State& s) { mutate_paths(s, scene, *bdpt, default_mutation_weights()); });
+    add("mlt", [this](benchmark::State& s) { mutate_paths(s, scene, *bdpt); });
     for (const auto& [mutation, weight] : default_mutation_weights())
-      add(("mlt " + mutation).c_str(), [this, mutation = mutation](benchmark::State& s) {
-        mutate_paths(s, scene, *bdpt, {{mutation, 1.0}, {"large_step", 1.0}});
-      });
+      add(("mlt by " + mutation).c_str(),
+          [this, mutation = mutation](benchmark::State& s) {
+            mutate_by(s, scene, *bdpt, mutation);
+          })
+          ->UseManualTime()
+          ->Iterations(kProposals);
   }
 };
 
