@@ -84,12 +84,13 @@ Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_exc
   return tiles;
 }
 
-Tiles render_tiles_by_chains(const Scene& scene, const std::string& integrator, int max_depth,
-                             int replicates, double mutations_per_pixel, std::uint64_t seed) {
+Tiles render_tiles_by_chains(const Scene& scene, const ChainSettings& settings, int replicates,
+                             double mutations_per_pixel, std::uint64_t seed) {
   Tiles tiles = empty_tiles(scene, replicates);
   RenderOptions options;
-  options.integrator = integrator;
-  options.overrides = {{"max_depth", std::to_string(max_depth)}};
+  options.integrator = settings.integrator;
+  options.overrides = {{"max_depth", std::to_string(settings.max_depth)}};
+  if (!settings.mutations.empty()) options.overrides.emplace_back("mutations", settings.mutations);
   options.samples_per_pixel = mutations_per_pixel;
   for (int r = 0; r < replicates; ++r) {
     options.seed = seed + static_cast<std::uint64_t>(r) * 0x9E3779B97F4A7C15;

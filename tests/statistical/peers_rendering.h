@@ -33,9 +33,14 @@ struct Tiles {
 /// One sample a pixel and round. Only bdpt can tell the `excess`.
 Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_excess, int replicates,
                    int rounds, std::uint64_t seed);
-/// By independent renders of pssmlt or mlt.
-Tiles render_tiles_by_chains(const Scene& scene, const std::string& integrator, int max_depth,
-                             int replicates, double mutations_per_pixel, std::uint64_t seed);
+struct ChainSettings {
+  std::string integrator;  ///< pssmlt or mlt
+  int max_depth;
+  std::string mutations;  ///< with weights; empty: the default ones
+};
+/// By independent renders.
+Tiles render_tiles_by_chains(const Scene& scene, const ChainSettings& settings, int replicates,
+                             double mutations_per_pixel, std::uint64_t seed);
 
 /// The reference of scenes/NAME where `scene`'s crop window lies, and its standard errors.
 struct Reference {

@@ -11,6 +11,7 @@
 #include "core/estimators/sampling.h"
 #include "core/scene_io/load.h"
 #include "media/registry.h"
+#include "mlt/registry.h"
 #include "tests/statistical/peers_rendering.h"
 
 namespace fogbow {
@@ -20,7 +21,7 @@ using namespace testing;
 
 constexpr int kMaxDepth = 64;  // as the references
 constexpr int kReplicates = 32;
-constexpr int kTests = 10 * 4 * (256 + 16 + 1);
+constexpr int kTests = (10 * 4 + 2 * 8) * (256 + 16 + 1);
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 constexpr double kPower = 0.99;
 
@@ -174,9 +175,10 @@ TEST_P(Peers, PicturesAgreeWithMitsuba) {
     expect_equal(peer.name + ": path, Mitsuba", by_path, theirs, tiles, ours, bias);
   }
   // Whatever the reference cannot tell, two of our own samplers must agree on.
-  for (const std::string integrator : {"pssmlt", "mlt"}) {
-    const Tiles chains = render_tiles_by_chains(scene, integrator, kMaxDepth, kReplicates, rounds,
-                                                suite_seed() + 90);
+  for (const auto& [integrator, mutations] :
+       {std::pair<std::string, int>("pssmlt", peer.pssmlt), {"mlt", peer.mlt}}) {
+    const Tiles chains = render_tiles_by_chains(scene, {integrator, kMaxDepth, ""}, kReplicates,
+                                                mutations, suite_seed() + 90);
     expect_equal(
         peer.name + ": " + integrator + ", bdpt", chains,
         [&](const std::vector<std::size_t>& part) { return ours.estimate(part); }, all_tiles(ours),
@@ -189,6 +191,47 @@ INSTANTIATE_TEST_SUITE_P(Scenes, Peers, ::testing::ValuesIn(peers()), [](const a
   std::replace(name.begin(), name.end(), '-', '_');
   return name;
 });
+
+class MutationAlone : public ::testing::TestWithParam<std::tuple<std::string, std::string>> {};
+
+/// Each mutation together with large steps, which alone make a chain ergodic.
+TEST_P(MutationAlone, AgreesWithBdpt) {
+  if (!is_long()) GTEST_SKIP() << "in the long suite";
+  constexpr int kRounds = 48, kMutations = 256;
+  const auto& [scene_name, mutation] = GetParam();
+  std::vector<std::string> warnings;
+  const Scene scene(
+      load_mitsuba_xml("scenes/" + scene_name + "/scene.xml", builtin_media(), {}, warnings));
+  static std::map<std::string, Tiles> by_bdpt;
+  if (!by_bdpt.contains(scene_name))
+    by_bdpt[scene_name] = render_tiles(scene, *make_bdpt(scene, {.max_depth = kMaxDepth}), false,
+                                       kReplicates, kRounds, suite_seed() + 110);
+  const Tiles& bdpt = by_bdpt[scene_name];
+  const std::string mutations = mutation + ":1,large_step:1";
+  const Tiles chains = render_tiles_by_chains(scene, {"mlt", kMaxDepth, mutations}, kReplicates,
+                                              kMutations, suite_seed() + 120);
+  expect_equal(scene_name + ": " + mutation, chains,
+               [&](const std::vector<std::size_t>& part) { return bdpt.estimate(part); },
+               all_tiles(bdpt), Tiles{bdpt.across, {}, std::vector<double>(bdpt.count())},
+               {0.01, 0.05});
+}
+
+std::vector<std::string> mutations_but_large_steps() {
+  std::vector<std::string> names;
+  for (const auto& [name, weight] : default_mutation_weights())
+    if (name != "large_step") names.push_back(name);
+  return names;
+}
+
+INSTANTIATE_TEST_SUITE_P(Scenes, MutationAlone,
+                         ::testing::Combine(::testing::Values("glass-sphere-fog", "caustic-beam"),
+                                            ::testing::ValuesIn(mutations_but_large_steps())),
+                         [](const auto& info) {
+                           std::string name =
+                               std::get<0>(info.param) + "_" + std::get<1>(info.param);
+                           std::replace(name.begin(), name.end(), '-', '_');
+                           return name;
+                         });
 
 }  // namespace
 }  // namespace fogbow
