@@ -42,4 +42,12 @@ ClassTally ClassTally::deserialize(std::istream& in) {
   return tally;
 }
 
+std::string configuration_text(const PathClass& c) {
+  if (c.k == 0) return "all others";
+  if (c.k > 32) return "k = " + std::to_string(c.k);
+  std::string text;
+  for (int i = 0; i < c.k; ++i) text += (c.c >> i & 1) ? 'M' : 'S';
+  return text;
+}
+
 }  // namespace fogbow

@@ -2,6 +2,7 @@
 #pragma once
 #include <cstdint>
 #include <map>
+#include <string>
 #include <vector>
 
 #include "core/path/measured_path.h"
@@ -16,6 +17,8 @@ struct PathClass {
   auto operator<=>(const PathClass&) const = default;
 };
 PathClass path_class(const MeasuredPath& path);
+/// From light to eye, "SMS…".
+std::string configuration_text(const PathClass& c);
 
 /// Expected-value time share of the classes that a chain has seen; room for a fixed number of them,
 /// what is beyond is summed under the class {0, 0}.

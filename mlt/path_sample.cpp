@@ -25,8 +25,9 @@ bool PathSample::settle() {
   const bool seen = path_.evaluate(*scene_);
   const ScaledProduct<RGB>& f = path_.f();
   contribution_ = {path_.raster(), f.mantissa(), path_.size(), 0, 0};
-  log_f_star_ =
+  const double log_f =
       log(ScaledProduct<double>(luminance(f.mantissa()))) + f.exponent() * std::numbers::ln2;
+  log_f_star_ = path_.is_seen_light(*scene_) ? -std::numeric_limits<double>::infinity() : log_f;
   selection_key_ = key();
   return seen;
 }

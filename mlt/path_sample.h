@@ -10,7 +10,7 @@
 
 namespace fogbow {
 
-/// A path as the state of a chain; its target is the luminance of f.
+/// A path as the state of a chain; its target is the luminance of f, without the seen light.
 class PathSample {
  public:
   /// To be written; room for `max_vertices`.

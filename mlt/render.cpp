@@ -52,6 +52,7 @@ std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettin
   s.rr_depth = settings.rr_depth;
   if (settings.integrator == "path") return make_path_tracer(scene, s);
   if (settings.integrator == "light") return make_light_tracer(scene, s);
+  s.seen_light = !settings.uses_chains();
   return make_bdpt(scene, s);
 }
 

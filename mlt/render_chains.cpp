@@ -9,6 +9,7 @@
 #include "mlt/mutations/primary_sample_mutations.h"
 #include "mlt/registry.h"
 #include "mlt/render_parts.h"
+#include "mlt/seen_light_picture.h"
 #include "mlt/technique_distribution.h"
 
 namespace fogbow {
@@ -200,15 +201,6 @@ struct ChainRender {
       report.kinds.push_back({std::string(kinds[i]), sum.proposed_kind[i], sum.accepted_kind[i]});
     return report;
   }
-
-  /// From light to eye.
-  static std::string configuration_text(const PathClass& c) {
-    if (c.k == 0) return "all others";
-    if (c.k > 32) return "k = " + std::to_string(c.k);
-    std::string text;
-    for (int i = 0; i < c.k; ++i) text += (c.c >> i & 1) ? 'M' : 'S';
-    return text;
-  }
 };
 
 /// R̂ and effective sample size of each notable path length, and the worst of them.
@@ -236,6 +228,7 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
   session.announce("bootstrap");
   ChainRender<Chains> r(scene, settings, options.seed);
   Film film(scene.film(), kChainFilmExponent);
+  SeenLightPicture seen(scene, settings, options.seed, r.bootstrap.normalization().b());
   session.begin_rendering();
 
   const std::uint64_t chains = r.ensemble.size();
@@ -249,9 +242,12 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
           return std::min(share, round * kStepsPerRound);
         },
         film);
+    seen.keep_up(r.ensemble.total_steps());
     const Normalization n = r.normalization();
-    session.report(r.ensemble.total_steps(), n.b(), n.standard_error(),
-                   [&] { return r.develop(film); });
+    const ReplicateMean directly = seen.luminance();
+    session.report(r.ensemble.total_steps(), n.b() + directly.mean,
+                   std::hypot(n.standard_error(), directly.standard_error),
+                   [&] { return seen.add_to(r.develop(film)); });
   } while (r.ensemble.total_steps() < target && !session.out_of_time() && !session.interrupted());
   r.ensemble.finish(film);
 
@@ -274,6 +270,7 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
   for (const MutationReport& m : result.mutations)
     if (const auto it = m.rejected.find("non-finite"); it != m.rejected.end())
       result.non_finite += it->second;
+  seen.add_to(result);
   return result;
 }
 
@@ -330,9 +327,21 @@ std::string replay_by(const Scene& scene, const RenderSettings& settings, std::u
 
 RenderResult render_chains(const Scene& scene, const RenderOptions& options,
                            const RenderSettings& settings, Session& session) {
-  return settings.integrator == "mlt"
-             ? render_by<PathChains>(scene, options, settings, session)
-             : render_by<PrimarySampleChains>(scene, options, settings, session);
+  try {
+    return settings.integrator == "mlt"
+               ? render_by<PathChains>(scene, options, settings, session)
+               : render_by<PrimarySampleChains>(scene, options, settings, session);
+  } catch (const Error& error) {
+    if (error.kind() != ErrorKind::NoLight) throw;
+  }
+  // Perhaps there is seen light alone, which chains leave out.
+  RenderSettings without_chains = settings;
+  without_chains.integrator = "bdpt";
+  RenderResult result = render_independent(scene, options, without_chains, session);
+  result.notes.push_back(
+      "all light that was found is seen directly or through specular surfaces: sampled without "
+      "chains");
+  return result;
 }
 
 std::string replay(const Scene& scene, const RenderOptions& options, std::uint64_t seed,

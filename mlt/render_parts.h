@@ -10,7 +10,8 @@
 
 namespace fogbow {
 
-/// That of the integrator, or that of whose primary samples its chains are made.
+/// That of the integrator, or that of whose primary samples its chains are made, without the seen
+/// light.
 std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettings& settings);
 
 /// One factor a group, by which its sums estimate the whole picture.

@@ -24,7 +24,7 @@ void add_emission(const Scene& scene, Workspace& w, int t, const Vec2& raster) {
 class Bdpt final : public Estimator {
  public:
   Bdpt(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene), max_vertices_(settings.max_depth + 1) {}
+      : scene_(scene), max_vertices_(settings.max_depth + 1), seen_light_(settings.seen_light) {}
 
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override {
     w.contributions.clear();
@@ -34,9 +34,14 @@ class Bdpt final : public Estimator {
     trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
     const int eye_size = static_cast<int>(w.eye.size());
     const int light_size = static_cast<int>(w.light.size());
+    bool specular = true;  // all vertices between the first and this
     for (int t = 1; t <= eye_size; ++t) {
-      if (w.eye[t - 1].x.emitter >= 0 && t >= 2) add_emission(scene_, w, t, raster);
+      const Vertex& x = w.eye[t - 1].x;
+      const bool left_out = !seen_light_ && specular && is_seen(scene_, x);
+      if (x.emitter >= 0 && t >= 2 && !left_out) add_emission(scene_, w, t, raster);
+      specular = specular && (t == 1 || x.degenerate);
       for (int s = 1; s <= light_size && s + t <= max_vertices_; ++s) {
+        if (!seen_light_ && s + t == 2 && is_seen(scene_, w.light[0].x)) continue;
         const auto c = join(scene_, w.light, s, w.eye, t);
         if (c) w.add({t == 1 ? c->raster : raster, c->weight * c->value, s + t, s, t});
       }
@@ -48,6 +53,7 @@ class Bdpt final : public Estimator {
  private:
   const Scene& scene_;
   int max_vertices_;
+  bool seen_light_;
 };
 
 /// Of all techniques that with t = 1, and alone: its weight is one.

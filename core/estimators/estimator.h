@@ -45,6 +45,8 @@ class Estimator {
 struct EstimatorSettings {
   int max_depth = 64;  ///< longest path, in edges: k ≤ max_depth + 1
   int rr_depth = 5;    ///< path: edges before roulette on the throughput starts
+  /// bdpt: with the light that make_seen_light() samples.
+  bool seen_light = true;
 };
 
 /// Volumetric path tracing: next-event estimation with multiple importance sampling; in media also
@@ -55,5 +57,8 @@ std::unique_ptr<Estimator> make_light_tracer(const Scene& scene, const Estimator
 /// All techniques (s,t) over surface and medium vertices, weighted by the balance heuristic
 /// [Veach1997].
 std::unique_ptr<Estimator> make_bdpt(const Scene& scene, const EstimatorSettings& settings);
+/// The light alone that the eye sees directly or by specular vertices only (is_seen()): where on
+/// the film it lies is easily found by looking, and hardly by chains.
+std::unique_ptr<Estimator> make_seen_light(const Scene& scene, const EstimatorSettings& settings);
 
 }  // namespace fogbow

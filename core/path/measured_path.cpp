@@ -95,6 +95,12 @@ bool MeasuredPath::evaluate(const Scene& scene) {
   return seen.has_value();
 }
 
+bool MeasuredPath::is_seen_light(const Scene& scene) const {
+  for (int i = 1; i < last(); ++i)
+    if (!vertices_[i].degenerate) return false;
+  return is_seen(scene, vertices_[0]);
+}
+
 double MeasuredPath::pdf_from_light(const Scene& scene, int i) const {
   if (i == 0) return pdf_emitter_position(scene, vertices_[0]);
   const Edge& e = edges_[i - 1];

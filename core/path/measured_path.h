@@ -64,6 +64,9 @@ class MeasuredPath {
   const ScaledProduct<RGB>& f() const { return f_; }
   const Vec2& raster() const { return raster_; }
 
+  /// Whether the eye sees x₁ directly or by degenerate vertices alone (is_seen()).
+  bool is_seen_light(const Scene& scene) const;
+
   /// Density in μ of x[i] sampled from the light, or from the eye, given what comes before it
   /// there; roulette and distance included.
   double pdf_from_light(const Scene& scene, int i) const;

@@ -97,4 +97,10 @@ inline bool hittable(const Scene& scene, const Vertex& x) {
   return x.emitter >= 0 && scene.emitter(x.emitter).kind() != EmitterKind::Point;
 }
 
+/// Whether light from x₁ that reaches the eye directly or by degenerate vertices alone is "seen
+/// light": a function of the film's position, up to the choice of events.
+inline bool is_seen(const Scene& scene, const Vertex& x) {
+  return hittable(scene, x) && !x.in_medium();
+}
+
 }  // namespace fogbow

@@ -26,7 +26,7 @@ PathPopulation::PathPopulation(const Scene& scene, int max_depth, std::uint64_t 
     : scene_(scene),
       max_depth_(max_depth),
       seed_(seed),
-      bdpt_(make_bdpt(scene, {.max_depth = max_depth})),
+      bdpt_(make_bdpt(scene, {.max_depth = max_depth, .seen_light = false})),
       mean_f_star_(0),
       techniques_({}, max_depth + 1) {
   const auto light = pilot_techniques(*bdpt_, seed, kPilot);
