@@ -99,6 +99,7 @@ std::map<std::string, std::size_t> render_memory(const Scene& scene, const Rende
   if (settings.uses_chains()) {
     const std::size_t primary_samples = 12 * depth * sizeof(double);
     const std::size_t chain = 2 * (workspace + primary_samples);
+    parts["film"] *= 2;  // one of the light that chains leave out
     parts["chains"] = Film::kGroups * static_cast<std::size_t>(settings.chains_per_group) * chain;
     parts["bootstrap"] = static_cast<std::size_t>(settings.bootstrap_samples) * sizeof(double);
   } else {

@@ -11,7 +11,6 @@ namespace {
 
 /// A sample takes about as long as a mutation.
 constexpr std::uint64_t kMutationsPerSample = 16;
-constexpr std::uint64_t kLeastRounds = 4;
 /// Fraction bits of the film below the mean luminance; emitters may be brighter by many more.
 constexpr int kFractionBits = 24;
 
@@ -61,7 +60,7 @@ SeenLightPicture::SeenLightPicture(const Scene& scene, const RenderSettings& set
 void SeenLightPicture::keep_up(std::uint64_t mutations) {
   if (!sampling_) return;
   const auto pixels = static_cast<std::uint64_t>(sampling_->width()) * sampling_->height();
-  const std::uint64_t rounds = std::max(kLeastRounds, mutations / (kMutationsPerSample * pixels));
+  const std::uint64_t rounds = 1 + mutations / (kMutationsPerSample * pixels);
   while (sampling_->samples() < rounds * pixels) sampling_->run_round();
 }
 

@@ -11,11 +11,11 @@ namespace {
 
 const StepSizes kOffsets(1e-4, 0.3);  ///< of parallel light, in radii of the scene
 
-/// Between a tenth of a pixel and a tenth of the picture's size, in pixels.
+/// Between a pixel and a tenth of the picture's size.
 std::optional<Vec3> step_on_film(const PathSample& x, Rng& rng) {
   const auto [width, height] = rendered_size(x.scene().film());
   const double size = std::sqrt(static_cast<double>(width) * height);
-  const StepSizes pixels(0.5, std::max(0.5 * size, 1.0));
+  const StepSizes pixels(1, std::max(0.1 * size, 2.0));
   const Vec2 raster = x.raster() + planar_step(pixels, rng) / Vec2(width, height);
   if (!(raster.x >= 0 && raster.x < 1 && raster.y >= 0 && raster.y < 1)) return std::nullopt;
   const MeasuredPath& path = x.path();
