@@ -9,8 +9,8 @@ namespace fogbow {
 
 namespace {
 
-/// A sample takes about as long as a mutation.
-constexpr std::uint64_t kMutationsPerSample = 16;
+/// A sample takes about as long as a mutation; the first few are worth more.
+constexpr std::uint64_t kMutationsPerSample = 16, kFirstRounds = 8, kMutationsPerFirst = 2;
 /// Fraction bits of the film below the mean luminance; emitters may be brighter by many more.
 constexpr int kFractionBits = 24;
 
@@ -60,7 +60,9 @@ SeenLightPicture::SeenLightPicture(const Scene& scene, const RenderSettings& set
 void SeenLightPicture::keep_up(std::uint64_t mutations) {
   if (!sampling_) return;
   const auto pixels = static_cast<std::uint64_t>(sampling_->width()) * sampling_->height();
-  const std::uint64_t rounds = 1 + mutations / (kMutationsPerSample * pixels);
+  const std::uint64_t rounds =
+      std::max(1 + mutations / (kMutationsPerSample * pixels),
+               std::min(kFirstRounds, 1 + mutations / (kMutationsPerFirst * pixels)));
   while (sampling_->samples() < rounds * pixels) sampling_->run_round();
 }
 

@@ -41,10 +41,4 @@ double log_range_density(const Scene& scene, const MeasuredPath& path, Range ran
   return sum.log();
 }
 
-bool reachable(const Scene& scene, const MeasuredPath& path) {
-  for (int s = 0; s < path.size(); ++s)
-    if (joinable(scene, path, s)) return true;
-  return false;
-}
-
 }  // namespace fogbow

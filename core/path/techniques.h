@@ -28,7 +28,4 @@ void choose_infinite_emitter(const Scene& scene, Vertex& x, Rng& rng);
 double log_range_density(const Scene& scene, const MeasuredPath& path, Range range,
                          std::span<const double> weights);
 
-/// Whether any technique (s, t) can sample the path: Σ_s p_s > 0.
-bool reachable(const Scene& scene, const MeasuredPath& path);
-
 }  // namespace fogbow

@@ -132,11 +132,11 @@ def add_extremes_of_depth_and_film(manifest, base):
         manifest.agree(f"{name} of depth {depth}", with_value(scene, "default[@name='depth']", depth))
     fov = "sensor/float[@name='fov']"
     manifest.agree("field of view of 150 degrees", with_value(base["camera_in_fog"], fov, 150),
-                   ("path", "bdpt", "pssmlt", "mlt"), 4)
+                   ("path", "bdpt", "pssmlt", "mlt"), 8)
     manifest.agree("field of view of 0.01 degrees", with_value(glow, fov, 0.01), ("path", "bdpt", "pssmlt", "mlt"))
     for integrator in INTEGRATORS:
         # Chains are slower where they see but a part of the picture.
-        more, most = {"light": (2, 2), "pssmlt": (4, 12), "mlt": (8, 24)}.get(integrator, (1, 1))
+        more, most = {"light": (2, 2), "pssmlt": (4, 12), "mlt": (8, 32)}.get(integrator, (1, 1))
         window, pixel = [5, 6, 9, 7], [1, 2, 1, 1]
         whole, few = manifest.side(glow, integrator, more), manifest.side(glow, integrator, 32 * most, size=[3, 3])
         one = manifest.side(glow, integrator, 256, size=[1, 1])

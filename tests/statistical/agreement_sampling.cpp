@@ -128,7 +128,7 @@ Sampling render_chains(const Scene& scene, const std::string& integrator, int lo
                        int replicates, std::uint64_t mutations, std::uint64_t seed) {
   // A short bootstrap's starts are biased as 1/samples, more than the errors here allow where the
   // light is in few paths; one of its samples takes as long as several mutations.
-  constexpr std::uint64_t kBootstrap = 1 << 15, kMutationsPerSample = 8;
+  constexpr std::uint64_t kBootstrap = 1 << 16, kMutationsPerSample = 8;
   Replicates all(replicates, longest);
   const auto [width, height] = rendered_size(scene.film());
   const double pixels = static_cast<double>(width) * height;
