@@ -3,10 +3,8 @@
 
 #include <gtest/gtest.h>
 
-#include "core/estimators/sampling.h"
-#include "core/path/path.h"
-#include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
+#include "tests/unit/path/eye_chains.h"
 
 namespace fogbow {
 namespace {
@@ -43,25 +41,11 @@ std::optional<Vec3> retrace(const Scene& scene, const Path& path, int a, int b,
   return x.position() + dot(path[b].position() - x.position(), last) / dot(w, last) * w;
 }
 
-/// Calls check(path, a, b) for every chain from non-degenerate a to non-degenerate b found in the
-/// scene's paths.
+/// Every chain from non-degenerate a to non-degenerate b found in the scene's paths.
 template <class Check>
 void for_each_chain(const Scene& scene, int samples, Check&& check) {
-  Subpath light, eye;
-  for (int i = 0; i < samples; ++i) {
-    Rng rng(testing::suite_seed(), RngDomain::Test, 2, i);
-    RandomStream stream(rng);
-    Vec2 raster;
-    trace_eye_subpath(scene, stream, 8, eye, raster);
-    if (eye.empty() || eye.back().x.infinite()) continue;
-    const Path path = assemble(light, 0, eye, static_cast<int>(eye.size()));
-    for (int a = 0; a + 1 < static_cast<int>(path.size()); ++a) {
-      int b = a + 1;
-      while (path[b].degenerate) ++b;
-      if (b > a + 1) check(path, a, b);
-      a = b - 1;
-    }
-  }
+  const auto degenerate = [](const Vertex& x) { return x.degenerate; };
+  for (int i = 0; i < samples; ++i) testing::for_each_chain(scene, 2, i, degenerate, check);
 }
 
 class SpecularChain : public ::testing::TestWithParam<const char*> {};

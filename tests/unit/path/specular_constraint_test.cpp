@@ -7,11 +7,9 @@
 
 #include <Eigen/LU>
 
-#include "core/estimators/sampling.h"
-#include "core/path/path.h"
 #include "core/path/specular_chain.h"
-#include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
+#include "tests/unit/path/eye_chains.h"
 
 namespace fogbow {
 namespace {
@@ -135,32 +133,18 @@ double jacobian_by_constraints(const Scene& scene, const Path& path, int a, int 
   return std::abs((derivatives_by(turn, 0) * chain_by_end.topRows<2>()).determinant());
 }
 
-bool in_chain(const Scene& scene, const Vertex& x) {
-  return x.degenerate || (x.on_surface() && is_glossy(scene, x));
-}
-
 /// Calls check(path, a, b) for so many chains of specular or glossy vertices, both ways.
 template <class Check>
 void for_chains(const Scene& scene, int chains, Check&& check) {
-  Subpath light, eye;
-  for (int i = 0; chains > 0; ++i) {
-    Rng rng(testing::suite_seed(), RngDomain::Test, 4, i);
-    RandomStream stream(rng);
-    Vec2 raster;
-    trace_eye_subpath(scene, stream, 8, eye, raster);
-    if (eye.empty() || eye.back().x.infinite()) continue;
-    const Path path = assemble(light, 0, eye, static_cast<int>(eye.size()));
-    for (int a = 0; a + 1 < static_cast<int>(path.size()); ++a) {
-      int b = a + 1;
-      while (b + 1 < static_cast<int>(path.size()) && in_chain(scene, path[b])) ++b;
-      if (b > a + 1) {
-        check(path, a, b);
-        check(path, b, a);
-        --chains;
-      }
-      a = b - 1;
-    }
-  }
+  const auto in_chain = [&](const Vertex& x) {
+    return x.degenerate || (x.on_surface() && is_glossy(scene, x));
+  };
+  for (int i = 0; chains > 0; ++i)
+    testing::for_each_chain(scene, 4, i, in_chain, [&](const Path& path, int a, int b) {
+      check(path, a, b);
+      check(path, b, a);
+      --chains;
+    });
 }
 
 /// A scene, its longest chains at least, and whether some lead through glossy vertices.
