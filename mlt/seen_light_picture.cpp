@@ -22,19 +22,6 @@ bool has_visible_emitters(const Scene& scene) {
   return false;
 }
 
-double mean_luminance(const Estimator& estimator, std::uint64_t seed) {
-  constexpr int kSamples = 4096;
-  Workspace w;
-  double sum = 0;
-  for (int i = 0; i < kSamples; ++i) {
-    Rng rng(seed, RngDomain::Bootstrap, static_cast<std::uint64_t>(i), 1);
-    RandomStream stream(rng);
-    estimator.sample(stream, stream, w);
-    for (const Contribution& c : w.contributions) sum += luminance(c.value);
-  }
-  return sum / kSamples;
-}
-
 /// Adds b_k, or b_k^c, where there is none yet as a new one.
 void add(std::vector<ClassShare>& shares, const ClassShare& more) {
   const auto same = std::ranges::find_if(shares, [&](const ClassShare& share) {

@@ -72,21 +72,26 @@ Image IndependentSampling::develop() const {
   return film_.develop(scale, std::vector<double>(Film::kGroups, scale * Film::kGroups));
 }
 
-int luminance_exponent(const Estimator& estimator, std::uint64_t seed) {
-  constexpr std::uint64_t kSamples = 4096, kMost = kSamples << 8;
+double mean_luminance(const Estimator& estimator, std::uint64_t seed, std::uint64_t most) {
   Workspace w;
   double sum = 0;
   std::uint64_t n = 0;
-  while (n < kSamples || (sum == 0 && n < kMost)) {
+  while (n < kLuminancePilot || (sum == 0 && n < most)) {
     Rng rng(seed, RngDomain::Bootstrap, n++, 0);
     RandomStream stream(rng);
     estimator.sample(stream, stream, w);
     for (const Contribution& c : w.contributions) sum += luminance(c.value);
   }
-  if (!(sum > 0))
-    throw Error(ErrorKind::NoLight, "no path that carries light was found in " + std::to_string(n) +
-                                        " samples of " + estimator.name());
-  return std::ilogb(sum / static_cast<double>(n)) + 1;
+  return sum / static_cast<double>(n);
+}
+
+int luminance_exponent(const Estimator& estimator, std::uint64_t seed) {
+  constexpr std::uint64_t kMost = kLuminancePilot << 8;
+  const double mean = mean_luminance(estimator, seed, kMost);
+  if (!(mean > 0))
+    throw Error(ErrorKind::NoLight, "no path that carries light was found in " +
+                                        std::to_string(kMost) + " samples of " + estimator.name());
+  return std::ilogb(mean) + 1;
 }
 
 }  // namespace fogbow

@@ -49,6 +49,11 @@ class IndependentSampling {
 /// Width and height of the part of the film that is rendered.
 std::pair<int, int> rendered_size(const FilmSettings& settings);
 
+inline constexpr std::uint64_t kLuminancePilot = 4096;
+/// What `estimator` finds in so many samples, or in more up to `most` as long as it finds nothing.
+double mean_luminance(const Estimator& estimator, std::uint64_t seed,
+                      std::uint64_t most = kLuminancePilot);
+
 /// e with 2^e > the mean luminance that `estimator` finds in some samples; throws Error(NoLight) if
 /// it finds none.
 int luminance_exponent(const Estimator& estimator, std::uint64_t seed);
