@@ -16,7 +16,8 @@ class PathSample {
   /// To be written; room for `max_vertices`.
   PathSample(const Scene& scene, int max_vertices) : scene_(&scene) { path_.reserve(max_vertices); }
 
-  /// One of the paths that a sample of BDPT holds, in proportion to its weighted luminance.
+  /// One of the paths that a sample of BDPT without seen light holds, in proportion to its weighted
+  /// luminance.
   static PathSample choose(const Scene& scene, int max_vertices, const PrimarySample& sample,
                            double u);
 

@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Usage: fogbow_benchmarks SCENE.xml... [Google Benchmark's flags]; every scene by rays alone, by
-// each estimator and by chains, whose
-// mutations are split into the time inside Embree and the rest.
+// each estimator and by chains, whose mutations are split into the time inside Embree and the rest.
 #include <benchmark/benchmark.h>
 
 #include <filesystem>
@@ -161,12 +160,14 @@ void mutate_by(benchmark::State& state, const Scene& scene, const Estimator& bdp
 struct Subject {
   Scene scene;
   std::unique_ptr<Estimator> path, light, bdpt;
+  std::unique_ptr<Estimator> chained;  ///< what chains are made of
 
   explicit Subject(SceneDescription description)
       : scene(std::move(description)),
         path(make_path_tracer(scene, {})),
         light(make_light_tracer(scene, {})),
-        bdpt(make_bdpt(scene, {})) {}
+        bdpt(make_bdpt(scene, {})),
+        chained(make_bdpt(scene, {.seen_light = false})) {}
 
   void register_all(const std::string& name) {
     const auto add = [&](const char* what, auto&& run) {
@@ -178,12 +179,12 @@ struct Subject {
     add("path", [this](benchmark::State& s) { estimate(s, *path); });
     add("light", [this](benchmark::State& s) { estimate(s, *light); });
     add("bdpt", [this](benchmark::State& s) { estimate(s, *bdpt); });
-    add("pssmlt", [this](benchmark::State& s) { mutate_samples(s, *bdpt); });
-    add("mlt", [this](benchmark::State& s) { mutate_paths(s, scene, *bdpt); });
+    add("pssmlt", [this](benchmark::State& s) { mutate_samples(s, *chained); });
+    add("mlt", [this](benchmark::State& s) { mutate_paths(s, scene, *chained); });
     for (const auto& [mutation, weight] : default_mutation_weights())
       add(("mlt by " + mutation).c_str(),
           [this, mutation = mutation](benchmark::State& s) {
-            mutate_by(s, scene, *bdpt, mutation);
+            mutate_by(s, scene, *chained, mutation);
           })
           ->UseManualTime()
           ->Iterations(kProposals);

@@ -67,7 +67,7 @@ void expect_same_bits_after_interruption(const Scene& scene, const Bootstrap& bo
 
 TEST(Serialization, InterruptedRunEndsOnTheSameBits) {
   const Scene scene(testing::make_test_scene("glass-sphere-fog"));
-  const auto estimator = make_bdpt(scene, {.max_depth = 8});
+  const auto estimator = make_bdpt(scene, {.max_depth = 8, .seen_light = false});
   const Bootstrap bootstrap(*estimator, 7, 256);
   expect_same_bits_after_interruption<PrimarySample>(
       scene, bootstrap,
@@ -86,7 +86,7 @@ TEST(Serialization, InterruptedRunEndsOnTheSameBits) {
 
 TEST(Serialization, TruncatedStateIsAnError) {
   const Scene scene(testing::make_test_scene("floor-fog"));
-  const auto estimator = make_bdpt(scene, {.max_depth = 4});
+  const auto estimator = make_bdpt(scene, {.max_depth = 4, .seen_light = false});
   const Bootstrap bootstrap(*estimator, 7, 64);
   std::ostringstream out;
   bootstrap.start(0, 0).serialize(out);
