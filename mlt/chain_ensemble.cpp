@@ -4,9 +4,7 @@
 namespace fogbow {
 
 void ChainRecord::serialize(std::ostream& out) const {
-  write_binary(out, independent_f_star);
-  write_binary(out, independent_squares);
-  write_binary(out, independent_steps);
+  write_binary(out, bridge);
   write_binary_vector(out, length_share);
   write_binary_vector(out, length_squares);
   classes.serialize(out);
@@ -14,9 +12,7 @@ void ChainRecord::serialize(std::ostream& out) const {
 
 ChainRecord ChainRecord::deserialize(std::istream& in) {
   ChainRecord record;
-  record.independent_f_star = read_binary<double>(in);
-  record.independent_squares = read_binary<double>(in);
-  record.independent_steps = read_binary<std::uint64_t>(in);
+  record.bridge = read_binary<BridgeSums>(in);
   record.length_share = read_binary_vector<double>(in, 1 << 20);
   record.length_squares = read_binary_vector<double>(in, 1 << 20);
   record.classes = ClassTally::deserialize(in);

@@ -5,6 +5,7 @@
 #include <optional>
 #include <vector>
 
+#include "core/estimators/estimator.h"
 #include "core/image/film.h"
 #include "core/math/random.h"
 #include "core/util/parallel.h"
@@ -16,13 +17,12 @@ namespace fogbow {
 
 /// What one chain has seen besides its splats.
 struct ChainRecord {
-  double independent_f_star = 0, independent_squares = 0;  ///< Σ f*, Σ f*² over independent steps
-  std::uint64_t independent_steps = 0;
-  /// By k: expected-value time share of paths of k vertices, and the same of the share's square.
+  BridgeSums bridge;  ///< of independent steps
+  /// By k: expected value of luminance / f* of the paths of k vertices, and of its square.
   std::vector<double> length_share, length_squares;
   ClassTally classes;  ///< of chains of paths alone
 
-  /// Luminance of one contribution of the current state, as a part of f*.
+  /// Luminance of one contribution of the current state, in parts of its f*.
   void gather(int k, double part) {
     const auto size = static_cast<std::size_t>(k) + 1;
     if (of_state_.size() < size)
@@ -53,9 +53,10 @@ class ChainEnsemble {
   using Start = std::function<State(int group, std::uint64_t chain)>;
 
   ChainEnsemble(const MutationTable<State>& table, std::uint64_t seed, int chains_per_group,
-                const Start& start)
+                const Start& start, const Bridge& bridge = {})
       : table_(table),
         seed_(seed),
+        bridge_(bridge),
         chains_(Film::kGroups * chains_per_group),
         records_(chains_.size()) {
     parallel_for(static_cast<std::int64_t>(chains_.size()), [&](std::int64_t i) {
@@ -94,13 +95,7 @@ class ChainEnsemble {
     const StepInfo info = chain.step(table_, rng, splatter(i, rng, splats));
     if (timed)
       chain.time(info.mutation, std::chrono::duration<double>(Clock::now() - start).count());
-    if (table_[info.mutation]->independent()) {
-      const double f_star =
-          info.proposal.rejection ? 0 : std::exp(info.log_f_star_y - info.proposal.log_density);
-      records_[i].independent_f_star += f_star;
-      records_[i].independent_squares += f_star * f_star;
-      ++records_[i].independent_steps;
-    }
+    if (table_[info.mutation]->independent()) tally(info, records_[i].bridge);
     return info;
   }
 
@@ -132,22 +127,38 @@ class ChainEnsemble {
   /// One step in so many is timed: the clock costs a part of a step.
   static constexpr std::uint64_t kTimedStep = 61;
 
+  /// T(ȳ) is that of an independent step, and T(x̄) is found in its ratio. A refusal depends on ȳ
+  /// alone, the choice of the mutation on x̄.
+  void tally(const StepInfo& info, BridgeSums& sums) const {
+    const Proposal& p = info.proposal;
+    if (p.rejection) return sums.add_sample(0, 1);
+    const double log_y = info.log_f_star_y - p.log_density;
+    const double log_x = info.log_f_star_x - (p.log_ratio + p.log_density);
+    sums.add_sample(std::exp(log_y), bridge_(log_y));
+    sums.add_state(bridge_(log_x), 1 / info.selection_x);
+  }
+
   auto splatter(std::size_t i, Rng& offsets, SplatQueue& splats) {
     return [this, i, &offsets, &splats](const State& x, double weight) {
       ChainRecord& record = records_[i];
-      double f_star = 0;  // in the unit of the contributions
-      for (const Contribution& c : x.contributions()) f_star += luminance(c.value);
+      double all = 0, f_star = 0;  // in the unit of the contributions
+      for (const Contribution& c : x.contributions()) {
+        all += luminance(c.value);
+        f_star += luminance(c.value) * x.importance()(c.raster);
+      }
       for (const Contribution& c : x.contributions()) {
         splats.splat(c.raster, c.value * (weight / f_star), group_of(i), uniform2(offsets));
         record.gather(c.k, luminance(c.value) / f_star);
       }
       record.settle(weight);
-      if constexpr (requires { x.path(); }) record.classes.add(path_class(x.path()), weight);
+      if constexpr (requires { x.path(); })
+        record.classes.add(path_class(x.path()), weight * all / f_star);
     };
   }
 
   const MutationTable<State>& table_;
   std::uint64_t seed_;
+  Bridge bridge_;
   std::vector<std::optional<Chain<State>>> chains_;
   std::vector<ChainRecord> records_;
 };

@@ -20,8 +20,8 @@ PathClass path_class(const MeasuredPath& path);
 /// From light to eye, "SMS…".
 std::string configuration_text(const PathClass& c);
 
-/// Expected-value time share of the classes that a chain has seen; room for a fixed number of them,
-/// what is beyond is summed under the class {0, 0}.
+/// Expected value of luminance / f* of the classes that a chain has seen; room for a fixed number
+/// of them, what is beyond is summed under the class {0, 0}.
 class ClassTally {
  public:
   static constexpr std::size_t kSlots = 512;

@@ -1,35 +1,80 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <array>
+#include <cmath>
+#include <cstdint>
 #include <iosfwd>
-#include <vector>
 
 #include "core/image/film.h"
-#include "mlt/primary_sample.h"
 
 namespace fogbow {
 
-/// b = ∫ f* dμ for each of the independent groups of chains: the mean over the group's own
-/// bootstrap and independent steps.
+/// Where samples of density p and states of chains meet [MengWong1996]: with
+/// g = 1/(1 + f*/(r₀p)), b = E_p[g f*/p] / E_{f*/b}[g]. What p samples far too seldom (f*/p ≫ r₀)
+/// counts as little as chains spend their time elsewhere, instead of once in a long while for all.
+class Bridge {
+ public:
+  /// No bridge: g = 1.
+  Bridge() = default;
+  /// `b`: about what is sought.
+  explicit Bridge(double b) {
+    if (b > 0) log_limit_ = std::log(kLimit * b);
+  }
+
+  /// g, by log f*/p.
+  double operator()(double log_ratio) const { return 1 / (1 + std::exp(log_ratio - log_limit_)); }
+
+ private:
+  /// r₀ / b; the best is the ratio of independent samples to independent states that were looked
+  /// at.
+  static constexpr double kLimit = 300;
+
+  double log_limit_ = std::numeric_limits<double>::infinity();
+};
+
+/// Sums over samples and states on both sides of a bridge.
+struct BridgeSums {
+  double f_star = 0, squares = 0;  ///< Σ f*/p, Σ (f*/p)²
+  double sampled = 0;              ///< Σ g f*/p
+  std::uint64_t samples = 0;
+  double visited = 0, states = 0;  ///< Σ g of states, and how many they stand for
+
+  void add_sample(double ratio, double g) {
+    f_star += ratio;
+    squares += ratio * ratio;
+    sampled += g * ratio;
+    ++samples;
+  }
+  void add_state(double g, double weight) {
+    visited += g * weight;
+    states += weight;
+  }
+  void add(const BridgeSums& other);
+  double b() const;
+};
+
+/// b = ∫ f* dμ for each of the independent groups of chains, from the group's own bootstrap,
+/// independent steps and the states they met.
 class Normalization {
  public:
-  void add(int group, double f_star_sum, double square_sum, std::uint64_t samples);
-  double b(int group) const;
-  /// Over all groups.
-  double b() const;
+  void add(int group, const BridgeSums& sums) { groups_[group].add(sums); }
+  double b(int group) const { return groups_[group].b(); }
+  /// Of all groups together.
+  double b() const { return all().b(); }
   /// Of b(), from the spread between groups.
   double standard_error() const;
   std::uint64_t samples() const;
-  /// χ² with kGroups − 1 degrees of freedom of the groups' values against the errors that each
-  /// group states for itself.
+  /// χ² with kGroups − 1 degrees of freedom of the groups' sample means of f*/p against the errors
+  /// that each group states for itself.
   double disagreement() const;
 
   void serialize(std::ostream& out) const;
   static Normalization deserialize(std::istream& in);
 
  private:
-  std::array<double, Film::kGroups> sum_{}, squares_{};
-  std::array<std::uint64_t, Film::kGroups> samples_{};
+  BridgeSums all() const;
+
+  std::array<BridgeSums, Film::kGroups> groups_{};
 };
 
 /// Mean of independent replicates and its standard error.
@@ -37,31 +82,5 @@ struct ReplicateMean {
   double mean = 0, standard_error = 0;
 };
 ReplicateMean replicate_mean(const std::array<double, Film::kGroups>& replicates);
-
-/// Luminance that BDPT's techniques carry, by k and s; from samples of its own, so that what is
-/// made of it does not depend on where chains start.
-std::vector<std::vector<double>> pilot_techniques(const Estimator& estimator, std::uint64_t seed,
-                                                  std::uint64_t samples);
-
-/// Independent estimates from which chains start.
-class Bootstrap {
- public:
-  /// `samples_per_group` for every group, doubled (up to 64 times as many) until all groups have
-  /// found light. Throws Error(NoLight).
-  Bootstrap(const Estimator& estimator, std::uint64_t seed, int samples_per_group);
-
-  const Normalization& normalization() const { return normalization_; }
-  /// One of the group's samples, in proportion to its f*: exactly distributed like f*/b once the
-  /// picture is scaled by the group's b.
-  PrimarySample start(int group, std::uint64_t chain) const;
-
- private:
-  std::uint64_t stream(int group, std::uint64_t sample) const;
-
-  const Estimator& estimator_;
-  std::uint64_t seed_;
-  Normalization normalization_;
-  std::array<std::vector<double>, Film::kGroups> f_star_;
-};
 
 }  // namespace fogbow

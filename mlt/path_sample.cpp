@@ -7,17 +7,17 @@
 
 namespace fogbow {
 
-PathSample PathSample::choose(const Scene& scene, int max_vertices, const PrimarySample& sample,
-                              double u) {
+std::optional<PathSample> PathSample::choose(const Scene& scene, int max_vertices,
+                                             const PrimarySample& sample, double u) {
   const auto& all = sample.contributions();
   std::vector<double> weights;
-  for (const Contribution& c : all) weights.push_back(luminance(c.value));
+  for (const Contribution& c : all)
+    weights.push_back(luminance(c.value) * sample.importance()(c.raster));
   const Contribution& c = all[DiscreteDistribution(weights).sample(u)];
   Subpath eye = sample.workspace().eye;
   if (c.infinite_emitter >= 0) eye[c.t - 1].x.emitter = c.infinite_emitter;
-  PathSample x(scene, max_vertices);
-  const auto why = x.assemble(sample.workspace().light, c.s, eye, c.t);
-  FOGBOW_CHECK(!why);
+  PathSample x(scene, max_vertices, sample.importance());
+  if (x.assemble(sample.workspace().light, c.s, eye, c.t)) return std::nullopt;
   return x;
 }
 
@@ -25,9 +25,10 @@ bool PathSample::settle() {
   const bool seen = path_.evaluate(*scene_);
   const ScaledProduct<RGB>& f = path_.f();
   contribution_ = {path_.raster(), f.mantissa(), path_.size(), 0, 0};
-  const double log_f =
-      log(ScaledProduct<double>(luminance(f.mantissa()))) + f.exponent() * std::numbers::ln2;
-  log_f_star_ = path_.is_seen_light(*scene_) ? -std::numeric_limits<double>::infinity() : log_f;
+  const double mantissa = luminance(f.mantissa()) * (*importance_)(path_.raster());
+  log_f_star_ = path_.is_seen_light(*scene_)
+                    ? -std::numeric_limits<double>::infinity()
+                    : log(ScaledProduct<double>(mantissa)) + f.exponent() * std::numbers::ln2;
   selection_key_ = key();
   return seen;
 }
@@ -82,8 +83,9 @@ void PathSample::serialize(std::ostream& out) const {
   write_binary(out, selection_key_);
 }
 
-PathSample PathSample::deserialize(std::istream& in, const Scene& scene, int max_vertices) {
-  PathSample x(scene, max_vertices);
+PathSample PathSample::deserialize(std::istream& in, const Scene& scene, int max_vertices,
+                                   const PictureImportance& importance) {
+  PathSample x(scene, max_vertices, importance);
   x.path_ = MeasuredPath::deserialize(in, scene);
   x.path_.reserve(max_vertices);
   x.contribution_ = read_binary<Contribution>(in);

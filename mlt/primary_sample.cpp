@@ -56,7 +56,8 @@ void PrimarySample::evaluate(const Estimator& estimator, SampleStream& light, Sa
   estimator.sample(light, eye, workspace_);
   f_star_ = workspace_.refused > 0 ? std::numeric_limits<double>::quiet_NaN() : 0;
   workspace_.refused = 0;
-  for (const Contribution& c : workspace_.contributions) f_star_ += luminance(c.value);
+  for (const Contribution& c : workspace_.contributions)
+    f_star_ += luminance(c.value) * (*importance_)(c.raster);
 }
 
 void PrimarySample::draw(const Estimator& estimator, Rng& rng) {
@@ -76,9 +77,9 @@ void PrimarySample::serialize(std::ostream& out) const {
   write_binary(out, f_star_);
 }
 
-PrimarySample PrimarySample::deserialize(std::istream& in) {
+PrimarySample PrimarySample::deserialize(std::istream& in, const PictureImportance& importance) {
   constexpr std::uint64_t kMost = std::uint64_t{1} << 24;
-  PrimarySample x;
+  PrimarySample x(importance);
   x.light_ = read_binary_vector<double>(in, kMost);
   x.eye_ = read_binary_vector<double>(in, kMost);
   x.workspace_.contributions = read_binary_vector<Contribution>(in, kMost);

@@ -6,6 +6,7 @@
 
 #include "core/estimators/estimator.h"
 #include "core/util/rng.h"
+#include "mlt/picture_importance.h"
 
 namespace fogbow {
 
@@ -14,7 +15,11 @@ namespace fogbow {
 /// is.
 class PrimarySample {
  public:
-  /// Luminance of all contributions together.
+  explicit PrimarySample(const PictureImportance& importance = kUniformImportance)
+      : importance_(&importance) {}
+
+  const PictureImportance& importance() const { return *importance_; }
+  /// Luminance of all contributions together, each times its importance.
   double f_star() const { return f_star_; }
   double log_f_star() const { return std::log(f_star_); }
   std::uint64_t selection_key() const { return 1; }
@@ -33,11 +38,13 @@ class PrimarySample {
 
   /// Coordinates and the contributions they had.
   void serialize(std::ostream& out) const;
-  static PrimarySample deserialize(std::istream& in);
+  static PrimarySample deserialize(std::istream& in,
+                                   const PictureImportance& importance = kUniformImportance);
 
  private:
   void evaluate(const Estimator& estimator, SampleStream& light, SampleStream& eye);
 
+  const PictureImportance* importance_;
   std::vector<double> light_, eye_;
   Workspace workspace_;
   double f_star_ = 0;

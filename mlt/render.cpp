@@ -56,25 +56,41 @@ std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettin
   return make_bdpt(scene, s);
 }
 
-std::vector<ClassShare> length_shares(const LengthTally& tally, const GroupScale& scale) {
+PictureScale PictureScale::of_samples(std::uint64_t samples) {
+  PictureScale scale{1 / static_cast<double>(samples), {}};
+  scale.group.fill(Film::kGroups * scale.all);
+  return scale;
+}
+
+ReplicateMean PictureScale::operator()(const std::array<double, Film::kGroups>& sums) const {
+  std::array<double, Film::kGroups> groups;
+  double total = 0;
+  for (int g = 0; g < Film::kGroups; ++g) {
+    groups[g] = sums[g] * group[g];
+    total += sums[g];
+  }
+  return {total * all, replicate_mean(groups).standard_error};
+}
+
+std::vector<ClassShare> length_shares(const LengthTally& tally, const PictureScale& scale) {
   std::size_t longest = 0;
   for (const auto& sums : tally) longest = std::max(longest, sums.size());
   std::vector<ClassShare> result;
   for (std::size_t k = 0; k < longest; ++k) {
     std::array<double, Film::kGroups> groups{};
     for (int g = 0; g < Film::kGroups; ++g)
-      if (k < tally[g].size()) groups[g] = tally[g][k] * scale[g];
-    const ReplicateMean m = replicate_mean(groups);
+      if (k < tally[g].size()) groups[g] = tally[g][k];
+    const ReplicateMean m = scale(groups);
     if (m.mean > 0) result.push_back({static_cast<int>(k), m.mean, m.standard_error});
   }
   return result;
 }
 
-ReplicateMean total_luminance(const LengthTally& tally, const GroupScale& scale) {
+ReplicateMean total_luminance(const LengthTally& tally, const PictureScale& scale) {
   std::array<double, Film::kGroups> groups{};
   for (int g = 0; g < Film::kGroups; ++g)
-    for (const double sum : tally[g]) groups[g] += sum * scale[g];
-  return replicate_mean(groups);
+    for (const double sum : tally[g]) groups[g] += sum;
+  return scale(groups);
 }
 
 RenderResult render(const Scene& scene, const RenderOptions& options) {

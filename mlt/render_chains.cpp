@@ -4,9 +4,11 @@
 #include <ostream>
 #include <sstream>
 
+#include "mlt/bootstrap.h"
 #include "mlt/chain_ensemble.h"
 #include "mlt/diagnostics.h"
 #include "mlt/mutations/primary_sample_mutations.h"
+#include "mlt/pilot.h"
 #include "mlt/registry.h"
 #include "mlt/render_parts.h"
 #include "mlt/seen_light_picture.h"
@@ -23,8 +25,15 @@ constexpr int kChainFilmExponent = -36;
 constexpr double kDisagreement = 0.1;
 /// Path lengths that carry less of the light are left out of the verdict on convergence.
 constexpr double kNotableShare = 0.01;
+/// Samples of the bootstrap for one of the pilot.
+constexpr int kSamplesPerPilot = 4;
 /// Steps of every chain between two looks at the clock.
 constexpr std::uint64_t kStepsPerRound = 64;
+
+double aspect(const FilmSettings& film) {
+  const auto [width, height] = rendered_size(film);
+  return static_cast<double>(width) / height;
+}
 
 std::ostream& operator<<(std::ostream& out, const Vec2& v) {
   return out << '(' << v.x << ", " << v.y << ')';
@@ -39,16 +48,21 @@ struct PrimarySampleChains {
   MutationTable<State> table;
 
   PrimarySampleChains(const Scene&, const RenderSettings& settings, const Estimator& estimator,
-                      std::uint64_t)
+                      const Pilot&, std::uint64_t)
       : table(make_primary_sample_mutations(estimator, settings.large_step_probability)) {}
-  double weight(const Mutation<State>& mutation) const { return mutation.selection_weight({}); }
+  double weight(const Mutation<State>& mutation) const {
+    return mutation.selection_weight(State());
+  }
   State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
     return bootstrap.start(group, chain);
   }
+  /// log f*/p of the state that a chain would start from if the bootstrap gave it `x`.
+  double log_ratio(const PrimarySample& x, double) const { return x.log_f_star(); }
 };
 
 struct PathChains {
   using State = PathSample;
+  static constexpr std::uint64_t kMostAttempts = 1000;
   const Scene& scene;
   int max_vertices;
   std::uint64_t seed;
@@ -56,24 +70,29 @@ struct PathChains {
   TechniqueDistribution techniques;
   MutationTable<State> table;
 
-  PathChains(const Scene& s, const RenderSettings& settings, const Estimator& estimator,
+  PathChains(const Scene& s, const RenderSettings& settings, const Estimator&, const Pilot& pilot,
              std::uint64_t seed_)
       : scene(s),
         max_vertices(settings.max_depth + 1),
         seed(seed_),
         weights(settings.mutations),
-        techniques(pilot_techniques(estimator, seed, settings.bootstrap_samples / kPilot),
-                   max_vertices),
+        techniques(pilot.techniques, max_vertices),
         table(make_path_mutations(settings.mutations, techniques, max_vertices)) {}
   double weight(const Mutation<State>& mutation) const { return weights.at(mutation.name()); }
   State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
-    Rng rng(seed, RngDomain::WarmUp, chain, 2);
-    return PathSample::choose(scene, max_vertices, bootstrap.start(group, chain), rng.uniform());
+    for (std::uint64_t attempt = 0;; ++attempt) {
+      Rng rng(seed, RngDomain::WarmUp, chain, 4 * attempt + 2);
+      auto x = PathSample::choose(scene, max_vertices, bootstrap.start(group, chain, attempt),
+                                  rng.uniform());
+      if (x) return *std::move(x);
+      FOGBOW_CHECK(attempt < kMostAttempts);
+    }
   }
-
- private:
-  /// Samples of the bootstrap for one that learns how techniques share the light.
-  static constexpr int kPilot = 8;
+  double log_ratio(const PrimarySample& x, double u) const {
+    const auto state = PathSample::choose(scene, max_vertices, x, u);
+    return state ? state->log_f_star() - log_large_step_density(*state, techniques)
+                 : -std::numeric_limits<double>::infinity();
+  }
 };
 
 /// Everything a render by chains holds.
@@ -81,49 +100,51 @@ template <class Chains>
 struct ChainRender {
   using State = typename Chains::State;
   std::unique_ptr<Estimator> estimator;
+  Pilot pilot;
   Chains chains;
+  Bridge bridge;
   Bootstrap bootstrap;
   ChainEnsemble<State> ensemble;
 
   ChainRender(const Scene& scene, const RenderSettings& settings, std::uint64_t seed)
       : estimator(make_estimator(scene, settings)),
-        chains(scene, settings, *estimator, seed),
-        bootstrap(*estimator, seed, std::max(1, settings.bootstrap_samples / Film::kGroups)),
-        ensemble(chains.table, seed, settings.chains_per_group,
-                 [this](int group, std::uint64_t chain) {
-                   return chains.start(bootstrap, group, chain);
-                 }) {}
+        pilot(run_pilot(*estimator, aspect(scene.film()), seed,
+                        settings.bootstrap_samples / kSamplesPerPilot)),
+        chains(scene, settings, *estimator, pilot, seed),
+        bridge(pilot.f_star),
+        bootstrap(
+            *estimator, seed, std::max(1, settings.bootstrap_samples / Film::kGroups),
+            settings.two_stage ? pilot.importance : kUniformImportance,
+            [this](const PrimarySample& x, double u) { return bridge(chains.log_ratio(x, u)); }),
+        ensemble(
+            chains.table, seed, settings.chains_per_group,
+            [this](int group, std::uint64_t chain) {
+              return chains.start(bootstrap, group, chain);
+            },
+            bridge) {}
 
   /// Bootstrap and large steps together: consistent.
   Normalization normalization() const {
     Normalization n = bootstrap.normalization();
-    for (std::size_t i = 0; i < ensemble.size(); ++i) {
-      const ChainRecord& r = ensemble.record(i);
-      n.add(ensemble.group_of(i), r.independent_f_star, r.independent_squares, r.independent_steps);
-    }
+    for (std::size_t i = 0; i < ensemble.size(); ++i)
+      n.add(ensemble.group_of(i), ensemble.record(i).bridge);
     return n;
   }
 
-  std::array<std::uint64_t, Film::kGroups> group_steps() const {
+  PictureScale scale() const {
+    const Normalization n = normalization();
     std::array<std::uint64_t, Film::kGroups> steps{};
     for (std::size_t i = 0; i < ensemble.size(); ++i)
       steps[ensemble.group_of(i)] += ensemble.chain(i).steps();
-    return steps;
-  }
-
-  GroupScale group_scale(const Normalization& n) const {
-    const auto steps = group_steps();
-    GroupScale scale{};
+    PictureScale scale{n.b() / static_cast<double>(ensemble.total_steps()), {}};
     for (int g = 0; g < Film::kGroups; ++g)
-      if (steps[g] > 0) scale[g] = n.b(g) / static_cast<double>(steps[g]);
+      if (steps[g] > 0) scale.group[g] = n.b(g) / static_cast<double>(steps[g]);
     return scale;
   }
 
   Image develop(const Film& film) const {
-    const Normalization n = normalization();
-    const auto scale = group_scale(n);
-    return film.develop(n.b() / static_cast<double>(ensemble.total_steps()),
-                        {scale.begin(), scale.end()});
+    const PictureScale s = scale();
+    return film.develop(s.all, {s.group.begin(), s.group.end()});
   }
 
   LengthTally tally() const {
@@ -137,7 +158,10 @@ struct ChainRender {
     return result;
   }
 
-  /// Of the time share of one path length, over all chains.
+  /// Of the picture.
+  ReplicateMean luminance() const { return total_luminance(tally(), scale()); }
+
+  /// Of the share of one path length, over all chains.
   Convergence length_convergence(int k) const {
     std::vector<ChainMoments> moments(ensemble.size());
     std::vector<double> steps(ensemble.size());
@@ -151,17 +175,18 @@ struct ChainRender {
   }
 
   /// b_k^c of all classes, from the largest.
-  std::vector<ClassShare> class_shares(const GroupScale& scale) const {
+  std::vector<ClassShare> class_shares() const {
+    const PictureScale scale = this->scale();
     std::map<PathClass, std::array<double, Film::kGroups>> groups;
     for (std::size_t i = 0; i < ensemble.size(); ++i) {
       std::map<PathClass, double> sums;
       ensemble.record(i).classes.add_to(sums);
       const int g = ensemble.group_of(i);
-      for (const auto& [c, share] : sums) groups[c][g] += share * scale[g];
+      for (const auto& [c, share] : sums) groups[c][g] += share;
     }
     std::vector<ClassShare> result;
     for (const auto& [c, values] : groups) {
-      const ReplicateMean m = replicate_mean(values);
+      const ReplicateMean m = scale(values);
       result.push_back({c.k, m.mean, m.standard_error, configuration_text(c)});
     }
     std::ranges::stable_sort(result, std::greater(), &ClassShare::value);
@@ -228,7 +253,7 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
   session.announce("bootstrap");
   ChainRender<Chains> r(scene, settings, options.seed);
   Film film(scene.film(), kChainFilmExponent);
-  SeenLightPicture seen(scene, settings, options.seed, r.bootstrap.normalization().b());
+  SeenLightPicture seen(scene, settings, options.seed, r.pilot.f_star);
   session.begin_rendering();
 
   const std::uint64_t chains = r.ensemble.size();
@@ -243,10 +268,9 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
         },
         film);
     seen.keep_up(r.ensemble.total_steps());
-    const Normalization n = r.normalization();
-    const ReplicateMean directly = seen.luminance();
-    session.report(r.ensemble.total_steps(), n.b() + directly.mean,
-                   std::hypot(n.standard_error(), directly.standard_error),
+    const ReplicateMean b = r.luminance(), directly = seen.luminance();
+    session.report(r.ensemble.total_steps(), b.mean + directly.mean,
+                   std::hypot(b.standard_error, directly.standard_error),
                    [&] { return seen.add_to(r.develop(film)); });
   } while (r.ensemble.total_steps() < target && !session.out_of_time() && !session.interrupted());
   r.ensemble.finish(film);
@@ -255,12 +279,13 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
   result.interrupted = session.interrupted() && r.ensemble.total_steps() < target;
   const Normalization n = r.normalization();
   result.image = r.develop(film);
-  result.b = n.b();
-  result.b_stderr = n.standard_error();
+  const ReplicateMean b = r.luminance();
+  result.b = b.mean;
+  result.b_stderr = b.standard_error;
   result.samples = r.ensemble.total_steps();
   result.chains = static_cast<int>(chains);
-  result.lengths = length_shares(r.tally(), r.group_scale(n));
-  result.classes = r.class_shares(r.group_scale(n));
+  result.lengths = length_shares(r.tally(), r.scale());
+  result.classes = r.class_shares();
   result.mutations = r.reports();
   result.groups_disagree = n.standard_error() > kDisagreement * n.b();
   result.diagnostics["normalization_chi2"] = n.disagreement();

@@ -28,10 +28,10 @@ RenderResult render_independent(const Scene& scene, const RenderOptions& options
   IndependentSampling sampling(*estimator, scene.film(), options.seed,
                                film_exponent(scene, *estimator, options.seed));
   session.begin_rendering();
-  GroupScale scale{};
+  PictureScale scale;
   do {
     sampling.run_round();
-    scale.fill(Film::kGroups / static_cast<double>(sampling.samples()));
+    scale = PictureScale::of_samples(sampling.samples());
     const ReplicateMean b = total_luminance(sampling.tally(), scale);
     session.report(sampling.samples(), b.mean, b.standard_error,
                    [&] { return sampling.develop(); });

@@ -14,12 +14,20 @@ namespace fogbow {
 /// light.
 std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettings& settings);
 
-/// One factor a group, by which its sums estimate the whole picture.
-using GroupScale = std::array<double, Film::kGroups>;
+/// Factors by which sums estimate the whole picture: those of all groups together, and for its
+/// error those of each group alone.
+struct PictureScale {
+  double all = 0;
+  std::array<double, Film::kGroups> group{};
+
+  /// Of independent samples, spread evenly over the groups.
+  static PictureScale of_samples(std::uint64_t samples);
+  ReplicateMean operator()(const std::array<double, Film::kGroups>& sums) const;
+};
 
 /// Mean luminance by path length, and that of all lengths together.
-std::vector<ClassShare> length_shares(const LengthTally& tally, const GroupScale& scale);
-ReplicateMean total_luminance(const LengthTally& tally, const GroupScale& scale);
+std::vector<ClassShare> length_shares(const LengthTally& tally, const PictureScale& scale);
+ReplicateMean total_luminance(const LengthTally& tally, const PictureScale& scale);
 
 /// The two ways to make a picture; what they have in common is left to render().
 RenderResult render_independent(const Scene& scene, const RenderOptions& options,

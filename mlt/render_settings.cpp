@@ -22,6 +22,13 @@ T parse_number(const std::string& name, const std::string& text, T least, T most
   return value;
 }
 
+bool parse_boolean(const std::string& name, const std::string& text) {
+  if (text == "true") return true;
+  if (text == "false") return false;
+  throw Error(ErrorKind::Usage,
+              "integrator property \"" + name + "\" is \"" + text + "\", expected true or false");
+}
+
 /// Our name of an integrator that other renderers' files ask for; empty if there is none.
 std::string own_integrator(const std::string& type) {
   if (type == "path" || type == "volpath" || type == "volpathmis") return "path";
@@ -43,6 +50,8 @@ bool apply(RenderSettings& settings, const std::string& name, const std::string&
     settings.large_step_probability = parse_number<double>(name, value, 1e-3, 1);
   } else if (name == "mutations") {
     settings.mutations = parse_mutation_weights(value);
+  } else if (name == "two_stage" || name == "twoStage") {
+    settings.two_stage = parse_boolean(name, value);
   } else if (name == "luminance_samples" || name == "luminanceSamples") {
     settings.bootstrap_samples = parse_number<int>(name, value, 8, 1 << 28);
   } else if (name == "chains") {
@@ -78,7 +87,8 @@ RenderSettings read_render_settings(const Scene& scene, const RenderOptions& opt
     if (!apply(settings, name, value))
       throw Error(ErrorKind::Usage, "unknown integrator property \"" + name +
                                         "\", expected max_depth, rr_depth, p_large, "
-                                        "mutations, luminance_samples, chains or sample_count");
+                                        "mutations, two_stage, luminance_samples, chains or "
+                                        "sample_count");
   return settings;
 }
 

@@ -18,6 +18,8 @@ struct RenderSettings {
   int rr_depth = 5;
   double large_step_probability = 0.3;                     ///< pssmlt
   MutationWeights mutations = default_mutation_weights();  ///< mlt
+  /// Chains share their time for the least relative error, not in proportion to luminance.
+  bool two_stage = true;
   int chains_per_group = 32;
   int bootstrap_samples = 1 << 17;
   double samples_per_pixel = 64;  ///< where neither time nor samples are asked for

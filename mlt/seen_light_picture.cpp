@@ -53,14 +53,9 @@ void SeenLightPicture::keep_up(std::uint64_t mutations) {
   while (sampling_->samples() < rounds * pixels) sampling_->run_round();
 }
 
-GroupScale SeenLightPicture::scale() const {
-  GroupScale scale;
-  scale.fill(Film::kGroups / static_cast<double>(sampling_->samples()));
-  return scale;
-}
-
 ReplicateMean SeenLightPicture::luminance() const {
-  return sampling_ ? total_luminance(sampling_->tally(), scale()) : ReplicateMean{};
+  if (!sampling_) return {};
+  return total_luminance(sampling_->tally(), PictureScale::of_samples(sampling_->samples()));
 }
 
 Image SeenLightPicture::add_to(Image chains) const {
@@ -87,7 +82,8 @@ void SeenLightPicture::add_to(RenderResult& result) const {
   result.b += seen.mean;
   result.b_stderr = std::hypot(result.b_stderr, seen.standard_error);
   result.non_finite += sampling_->refused();
-  for (ClassShare share : length_shares(sampling_->tally(), scale())) {
+  const auto scale = PictureScale::of_samples(sampling_->samples());
+  for (ClassShare share : length_shares(sampling_->tally(), scale)) {
     add(result.lengths, share);
     if (result.classes.empty()) continue;
     share.configuration = configuration_text({share.k, 0});

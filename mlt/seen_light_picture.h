@@ -25,8 +25,6 @@ class SeenLightPicture {
   void add_to(RenderResult& result) const;
 
  private:
-  GroupScale scale() const;
-
   std::unique_ptr<Estimator> estimator_;
   std::optional<IndependentSampling> sampling_;  ///< nothing where no emitter can be run into
 };

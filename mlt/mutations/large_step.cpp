@@ -16,7 +16,6 @@ class LargeStep final : public Mutation<PathSample> {
   double selection_weight(const PathSample&) const override { return weight_; }
   bool independent() const override { return true; }
 
-  /// T(ȳ) = Σ_s c_{s,k−s} p_s(ȳ).
   Proposal propose(const PathSample& x, PathSample& y, Rng& rng) const override {
     const auto [s, t] = techniques_.sample(rng.uniform());
     thread_local Subpath light, eye;
@@ -24,8 +23,8 @@ class LargeStep final : public Mutation<PathSample> {
     eye.reserve(x.path().capacity());
     if (const auto why = trace(x.scene(), s, t, rng, light, eye)) return refuse(*why);
     if (const auto why = y.assemble(light, s, eye, t)) return refuse(*why);
-    const double forward = log_density(y);
-    return {log_density(x) - forward, std::nullopt, forward};
+    const double forward = log_large_step_density(y, techniques_);
+    return {log_large_step_density(x, techniques_) - forward, std::nullopt, forward};
   }
 
  private:
@@ -46,16 +45,16 @@ class LargeStep final : public Mutation<PathSample> {
     return std::nullopt;
   }
 
-  double log_density(const PathSample& x) const {
-    return log_range_density(x.scene(), x.path(), {0, x.path().size()},
-                             techniques_.probabilities(x.path().size()));
-  }
-
   double weight_;
   const TechniqueDistribution& techniques_;
 };
 
 }  // namespace
+
+double log_large_step_density(const PathSample& y, const TechniqueDistribution& techniques) {
+  const int k = y.path().size();
+  return log_range_density(y.scene(), y.path(), {0, k}, techniques.probabilities(k));
+}
 
 PathMutation make_large_step(double weight, const TechniqueDistribution& techniques) {
   return std::make_unique<LargeStep>(weight, techniques);

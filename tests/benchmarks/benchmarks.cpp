@@ -11,9 +11,10 @@
 #include "core/scene_io/load.h"
 #include "core/util/log.h"
 #include "media/registry.h"
+#include "mlt/bootstrap.h"
 #include "mlt/chain.h"
 #include "mlt/mutations/primary_sample_mutations.h"
-#include "mlt/normalization.h"
+#include "mlt/pilot.h"
 #include "mlt/registry.h"
 #include "mlt/technique_distribution.h"
 #include "tests/benchmarks/embree_clock.h"
@@ -110,10 +111,11 @@ struct PathChain {
   Chain<PathSample> chain;
 
   PathChain(const Scene& scene, const Estimator& bdpt)
-      : techniques(pilot_techniques(bdpt, kSeed, 1 << 14), kMaxDepth + 1),
+      : techniques(run_pilot(bdpt, 1, kSeed, 1 << 14).techniques, kMaxDepth + 1),
         table(make_path_mutations(default_mutation_weights(), techniques, kMaxDepth + 1)),
         chain(
-            PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5),
+            PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5)
+                .value(),
             table) {}
 };
 

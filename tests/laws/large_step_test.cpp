@@ -40,7 +40,7 @@ TEST_P(LargeStep, EstimatesWhatBdptEstimates) {
       make_path_mutations({{"large_step", 1}}, population.techniques(), population.max_vertices());
   std::vector<Moments> bdpt(features.size()), large(features.size());
   std::vector<PathSample> parts;
-  PathSample y(scene, population.max_vertices());
+  PathSample y = population.blank();
   std::optional<PathSample> x;  // large steps do not depend on it
   for (int sample = 0; sample < kSamples; ++sample) {
     population.draw(static_cast<std::uint64_t>(sample), 1, parts);

@@ -5,7 +5,6 @@
 #include <map>
 
 #include "core/math/random.h"
-#include "mlt/normalization.h"
 
 namespace fogbow::testing {
 
@@ -22,28 +21,31 @@ double total(const std::vector<std::vector<double>>& table) {
 
 }  // namespace
 
-PathPopulation::PathPopulation(const Scene& scene, int max_depth, std::uint64_t seed)
+PathPopulation::PathPopulation(const Scene& scene, int max_depth, std::uint64_t seed,
+                               bool two_stage)
     : scene_(scene),
       max_depth_(max_depth),
       seed_(seed),
       bdpt_(make_bdpt(scene, {.max_depth = max_depth, .seen_light = false})),
       mean_f_star_(0),
       techniques_({}, max_depth + 1) {
-  const auto light = pilot_techniques(*bdpt_, seed, kPilot);
-  mean_f_star_ = total(light) / kPilot;
-  techniques_ = TechniqueDistribution(light, max_depth + 1);
+  pilot_ = run_pilot(*bdpt_, 1, seed, kPilot);
+  if (!two_stage) pilot_.importance = {};
+  mean_f_star_ = total(pilot_.techniques) / kPilot;
+  techniques_ = TechniqueDistribution(pilot_.techniques, max_depth + 1);
 }
 
 void PathPopulation::draw(std::uint64_t sample, double mean_parts,
                           std::vector<PathSample>& parts) const {
   parts.clear();
   Rng rng(seed_, RngDomain::Test, sample, 0);
-  PrimarySample x;
+  PrimarySample x(pilot_.importance);
   x.draw(*bdpt_, rng);
   const double expected = mean_parts * x.f_star() / mean_f_star_;
   const int n = static_cast<int>(expected + rng.uniform());
   for (int i = 0; i < n; ++i)
-    parts.push_back(PathSample::choose(scene_, max_vertices(), x, (i + rng.uniform()) / n));
+    if (auto part = PathSample::choose(scene_, max_vertices(), x, (i + rng.uniform()) / n))
+      parts.push_back(*std::move(part));
 }
 
 std::vector<PathSample> PathPopulation::of_every_configuration(std::uint64_t samples,

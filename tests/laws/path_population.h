@@ -6,6 +6,7 @@
 #include <vector>
 
 #include "mlt/path_sample.h"
+#include "mlt/pilot.h"
 #include "mlt/registry.h"
 #include "mlt/technique_distribution.h"
 #include "tests/helpers/test_scenes.h"
@@ -17,9 +18,12 @@ namespace fogbow::testing {
 /// they are not independent.
 class PathPopulation {
  public:
-  PathPopulation(const Scene& scene, int max_depth, std::uint64_t seed);
+  /// Not `two_stage`: f* is luminance alone.
+  PathPopulation(const Scene& scene, int max_depth, std::uint64_t seed, bool two_stage = true);
 
   int max_vertices() const { return max_depth_ + 1; }
+  /// To be written, with the same target.
+  PathSample blank() const { return {scene_, max_vertices(), pilot_.importance}; }
   const TechniqueDistribution& techniques() const { return techniques_; }
   /// b, as the pilot knows it: what one part stands for where mean_parts is one.
   double mean_f_star() const { return mean_f_star_; }
@@ -34,6 +38,7 @@ class PathPopulation {
   std::uint64_t seed_;
   std::unique_ptr<Estimator> bdpt_;
   double mean_f_star_;
+  Pilot pilot_;
   TechniqueDistribution techniques_;
 };
 

@@ -277,7 +277,7 @@ TEST_P(SwitchToy, SharesTimeAsLightIsShared) {
   for (int i = 0; i < kFunctions; ++i) ASSERT_NEAR(expected[i], coarser[i], 1e-7) << kNames[i];
 
   const Scene scene(describe(toy));
-  const PathPopulation population(scene, toy.k - 1, suite_seed());
+  const PathPopulation population(scene, toy.k - 1, suite_seed(), false);
   // What moves, and what flips; propagation alone finds the fog in front of the pinhole too rarely,
   // for it cannot hold the eye's side where the light's is specular.
   MutationWeights weights = {{"switch", 1}, {"caustic", 1}, {"lens", 1}, {"manifold", 1}};

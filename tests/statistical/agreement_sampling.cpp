@@ -124,18 +124,19 @@ Sampling sample(const Scene& scene, const Estimator& estimator, bool classified,
   return result;
 }
 
-Sampling render_chains(const Scene& scene, const std::string& integrator, int longest,
-                       int replicates, std::uint64_t mutations, std::uint64_t seed) {
+Sampling render_chains(const Scene& scene, const ChainSettings& settings, int replicates,
+                       std::uint64_t mutations, std::uint64_t seed) {
   // A short bootstrap's starts are biased as 1/samples, more than the errors here allow where the
   // light is in few paths; one of its samples takes as long as several mutations.
   constexpr std::uint64_t kBootstrap = 1 << 16, kMutationsPerSample = 8;
-  Replicates all(replicates, longest);
+  Replicates all(replicates, settings.longest);
   const auto [width, height] = rendered_size(scene.film());
   const double pixels = static_cast<double>(width) * height;
   RenderOptions options;
-  options.integrator = integrator;
+  options.integrator = settings.integrator;
   options.overrides = {
-      {"max_depth", std::to_string(longest - 1)},
+      {"max_depth", std::to_string(settings.longest - 1)},
+      {"two_stage", settings.two_stage ? "true" : "false"},
       {"chains", "8"},
       {"luminance_samples", std::to_string(std::max(kBootstrap, mutations / kMutationsPerSample))}};
   options.samples_per_pixel = static_cast<double>(mutations) / pixels;

@@ -67,9 +67,14 @@ class Replicates {
 using Sampling = std::vector<Replicates>;
 Sampling sample(const Scene& scene, const Estimator& estimator, bool classified, int longest,
                 int replicates, std::uint64_t samples, std::uint64_t seed);
-/// Independent renders of pssmlt or mlt, of so many mutations.
-Sampling render_chains(const Scene& scene, const std::string& integrator, int longest,
-                       int replicates, std::uint64_t mutations, std::uint64_t seed);
+struct ChainSettings {
+  std::string integrator;  ///< pssmlt or mlt
+  int longest;
+  bool two_stage;
+};
+/// Independent renders of so many mutations.
+Sampling render_chains(const Scene& scene, const ChainSettings& settings, int replicates,
+                       std::uint64_t mutations, std::uint64_t seed);
 
 /// Runs an independent pilot to learn how many samples `precision` takes at `level`, then those.
 using Sampler = std::function<Sampling(std::uint64_t samples, std::uint64_t seed)>;

@@ -1,0 +1,77 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+// b from both ends of a bridge, where everything is known: f* = 1/x^a on [ε, 1].
+#include "mlt/normalization.h"
+
+#include <gtest/gtest.h>
+
+#include "core/util/rng.h"
+#include "tests/helpers/statistics.h"
+
+namespace fogbow {
+namespace {
+
+constexpr double kPower = 0.95, kStart = 1e-7;
+constexpr int kRuns = 400, kSamples = 4000;
+
+double f_star(double x) { return std::pow(x, -kPower); }
+double primitive(double x) { return std::pow(x, 1 - kPower) / (1 - kPower); }
+const double kB = primitive(1) - primitive(kStart);
+
+/// Distributed like f*/b.
+double state(Rng& rng) {
+  const double u = rng.uniform();
+  return std::pow((1 - kPower) * (primitive(kStart) + u * kB), 1 / (1 - kPower));
+}
+
+/// Samples are uniform on the interval. States of small x stand for more: the chain looks at them
+/// less often.
+BridgeSums run(const Bridge& bridge, std::uint64_t stream, bool with_states) {
+  Rng rng(testing::suite_seed(), RngDomain::Test, stream, 40);
+  BridgeSums sums;
+  for (int i = 0; i < kSamples; ++i) {
+    const double y = kStart + (1 - kStart) * rng.uniform(), ratio = f_star(y) * (1 - kStart);
+    sums.add_sample(ratio, bridge(std::log(ratio)));
+    const double x = state(rng), looked_at = x < 0.01 ? 0.2 : 0.8;
+    if (with_states && rng.uniform() < looked_at)
+      sums.add_state(bridge(std::log(f_star(x) * (1 - kStart))), 1 / looked_at);
+  }
+  return sums;
+}
+
+TEST(Bridge, FindsTheIntegralWithAFractionOfTheError) {
+  std::vector<double> bridged, plain;
+  for (int i = 0; i < kRuns; ++i) {
+    bridged.push_back(run(Bridge(3 * kB), i, true).b());
+    plain.push_back(run(Bridge(3 * kB), i, false).b());
+  }
+  const testing::Estimate a = testing::estimate(bridged), b = testing::estimate(plain);
+  EXPECT_GT(testing::compare(a, kB), 1e-4) << a.mean << " ± " << a.standard_error << " for " << kB;
+  EXPECT_GT(testing::compare(b, kB), 1e-4) << b.mean << " ± " << b.standard_error << " for " << kB;
+  EXPECT_LT(a.standard_error, 0.5 * b.standard_error);
+}
+
+TEST(Bridge, WithoutABridgeIsTheMeanOfTheSamples) {
+  const BridgeSums sums = run(Bridge(), 0, true);
+  EXPECT_DOUBLE_EQ(sums.b(), sums.f_star / kSamples);
+  EXPECT_EQ(Bridge()(700), 1);
+  EXPECT_EQ(Bridge(0)(700), 1);
+}
+
+TEST(Normalization, PoolsGroupsAndTellsTheirSpread) {
+  Normalization n;
+  BridgeSums all;
+  std::array<double, Film::kGroups> groups;
+  for (int g = 0; g < Film::kGroups; ++g) {
+    const BridgeSums sums = run(Bridge(kB), 1000 + g, true);
+    n.add(g, sums);
+    all.add(sums);
+    groups[g] = sums.b();
+    EXPECT_EQ(n.b(g), sums.b());
+  }
+  EXPECT_EQ(n.b(), all.b());
+  EXPECT_EQ(n.samples(), std::uint64_t{Film::kGroups} * kSamples);
+  EXPECT_EQ(n.standard_error(), replicate_mean(groups).standard_error);
+}
+
+}  // namespace
+}  // namespace fogbow
