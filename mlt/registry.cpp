@@ -28,8 +28,8 @@ const std::vector<Entry>& entries() {
   static const std::vector<Entry> all = {
       {"bidirectional", 1,
        [](double w, const TechniqueDistribution&, int k) { return make_bidirectional(w, k); }},
-      {"lens", 16, simple<make_lens>},
-      {"caustic", 2, simple<make_caustic>},
+      {"lens", 24, simple<make_lens>},
+      {"caustic", 4, simple<make_caustic>},
       {"multichain", 2, simple<make_multichain>},
       {"scattering", 0.5, simple<make_scattering>},
       {"propagation", 0.6, simple<make_propagation>},

@@ -4,6 +4,7 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
+#include <cstdlib>
 
 #include "core/estimators/sampling.h"
 #include "core/util/parallel.h"
@@ -157,7 +158,7 @@ Sampling render_chains(const Scene& scene, const ChainSettings& settings, int re
 
 Sampling sample_until(const Sampler& sampler, std::uint64_t pilot_samples, Precision precision,
                       double level, std::uint64_t seed) {
-  constexpr double kSafety = 3;  // the pilot's own errors are uncertain
+  const double kSafety = std::getenv("FOGBOW_LONG") ? 1.5 : 3;  // the pilot is uncertain
   const Sampling pilot = sampler(pilot_samples, seed);
   double most = 1;
   for (const Replicates& r : pilot) {
