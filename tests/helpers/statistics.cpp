@@ -160,6 +160,18 @@ double power(const Estimate& a, const Estimate& b, double bias, double level) {
          boost::math::cdf(law, -critical);
 }
 
+double samples_needed(const Estimate& e, double bias, double level, double wanted) {
+  constexpr double kStep = 1.25, kMost = 1e9;
+  if (!(bias > 0)) return 0;
+  double factor = 1;
+  Estimate more = e;
+  while (power(more, more, bias, level) < wanted && factor < kMost) {
+    factor *= kStep;
+    more.standard_error = e.standard_error / std::sqrt(factor);
+  }
+  return factor;
+}
+
 std::uint64_t suite_seed() {
   static const std::uint64_t seed = [] {
     std::uint64_t value = 20130807;

@@ -40,6 +40,10 @@ double compare(const Estimate& a, double value);
 /// standard errors and Welch's degrees of freedom.
 double power(const Estimate& a, const Estimate& b, double bias, double level);
 
+/// How many times as many samples as `e` has are needed for a difference of `bias` to be detected
+/// with probability `wanted`, the other side of the comparison being as uncertain.
+double samples_needed(const Estimate& e, double bias, double level, double wanted);
+
 /// The seed of a suite: fixed, or from FOGBOW_FRESH_SEED in the environment (a number; anything
 /// else draws one). Printed when first asked for.
 std::uint64_t suite_seed();

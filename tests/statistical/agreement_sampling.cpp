@@ -4,7 +4,6 @@
 #include <gtest/gtest.h>
 
 #include <cstdio>
-#include <cstdlib>
 
 #include "core/estimators/sampling.h"
 #include "core/util/parallel.h"
@@ -20,20 +19,6 @@ bool near_lens(const Scene& scene, const Path& path) {
   const Vertex &last = path.back(), &before = path[path.size() - 2];
   return !before.infinite() &&
          length(last.position() - before.position()) < kNearLens * scene.radius();
-}
-
-/// How many times more samples than `r` has are needed for `bias` to be seen in its `estimate`, the
-/// other side of the comparison being as uncertain.
-double growth(const Estimate& e, double bias, double level) {
-  if (!(e.mean > 0)) return 0;
-  double factor = 1;
-  const auto detects = [&] {
-    Estimate scaled = e;
-    scaled.standard_error /= std::sqrt(factor);
-    return power(scaled, scaled, bias * e.mean, level) >= kPower;
-  };
-  while (!detects() && factor < 1e9) factor *= 1.25;
-  return factor;
 }
 
 }  // namespace
@@ -158,13 +143,16 @@ Sampling render_chains(const Scene& scene, const ChainSettings& settings, int re
 
 Sampling sample_until(const Sampler& sampler, std::uint64_t pilot_samples, Precision precision,
                       double level, std::uint64_t seed) {
-  const double kSafety = std::getenv("FOGBOW_LONG") ? 1.5 : 3;  // the pilot is uncertain
+  constexpr double kSafety = 2;  // the pilot's own errors are uncertain
+  const auto growth = [&](const Estimate& e, double bias) {
+    return samples_needed(e, bias * e.mean, level, kPower);
+  };
   const Sampling pilot = sampler(pilot_samples, seed);
   double most = 1;
   for (const Replicates& r : pilot) {
-    most = std::max(most, growth(r.mean(), precision.mean, level));
+    most = std::max(most, growth(r.mean(), precision.mean));
     for (const auto& part : r.parts())
-      if (part.notable) most = std::max(most, growth(r.sum(part.columns), precision.part, level));
+      if (part.notable) most = std::max(most, growth(r.sum(part.columns), precision.part));
   }
   return sampler(static_cast<std::uint64_t>(kSafety * most * static_cast<double>(pilot_samples)),
                  seed + 1);

@@ -5,7 +5,10 @@
 #include "core/image/image_io.h"
 #include "core/path/path.h"
 #include "core/util/parallel.h"
+#include "mlt/class_tally.h"
+#include "mlt/picture_importance.h"
 #include "mlt/render.h"
+#include "tests/statistical/agreement_sampling.h"
 
 namespace fogbow::testing {
 
@@ -19,12 +22,22 @@ double shadow_ray_excess(const Path& path) {
   return std::expm1(skipped * max_component(x1.medium->sigma_t(x1.position())));
 }
 
+/// As renders by chains name it.
+std::string configuration_text(const Path& path) {
+  PathClass c{static_cast<int>(path.size()), 0};
+  for (std::size_t i = 0; i < path.size() && i < 32; ++i)
+    c.c |= std::uint32_t{path[i].in_medium()} << i;
+  return fogbow::configuration_text(c);
+}
+
 Tiles empty_tiles(const Scene& scene, int replicates) {
   const auto [width, height] = rendered_size(scene.film());
   FOGBOW_CHECK(width % kTile == 0 && height % kTile == 0);
   const auto count = static_cast<std::size_t>(width / kTile) * (height / kTile);
-  return {width / kTile, std::vector(replicates, std::vector<double>(count)),
-          std::vector<double>(count)};
+  return {width / kTile,
+          std::vector(replicates, std::vector<double>(count)),
+          std::vector<double>(count),
+          {}};
 }
 
 }  // namespace
@@ -39,19 +52,26 @@ Estimate Tiles::estimate(const std::vector<std::size_t>& tiles) const {
   return testing::estimate(values);
 }
 
+void Tiles::add_class(const std::string& configuration, int replicate, double value) {
+  auto& values = classes[configuration];
+  values.resize(replicates.size());
+  values[replicate] += value;
+}
+
 double Tiles::mean_excess(const std::vector<std::size_t>& tiles) const {
   double sum = 0;
   for (const std::size_t i : tiles) sum += excess[i];
   return sum / static_cast<double>(tiles.size());
 }
 
-Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_excess, int replicates,
-                   int rounds, std::uint64_t seed) {
+Pictures render_tiles(const Scene& scene, const Estimator& estimator, bool classified,
+                      int replicates, int rounds, std::uint64_t seed) {
   const auto [width, height] = rendered_size(scene.film());
   const Vec2 pixel(1.0 / width, 1.0 / height);
-  Tiles tiles = empty_tiles(scene, replicates);
-  std::vector<std::vector<double>> excess(replicates, std::vector<double>(tiles.count()));
-  const int down = height / kTile;
+  Pictures result{empty_tiles(scene, replicates), empty_tiles(scene, replicates)};
+  std::vector<std::vector<double>> excess(replicates, std::vector<double>(result.all.count()));
+  std::vector<std::map<std::string, double>> classes(replicates);
+  const PictureGrid grid{width / kTile, height / kTile};
   parallel_for(replicates, [&, width = width, height = height](std::int64_t r) {
     Workspace w;
     for (int i = 0; i < rounds * width * height; ++i) {
@@ -61,30 +81,34 @@ Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_exc
       RandomStream light(rng);
       estimator.sample(light, eye, w);
       for (const Contribution& c : w.contributions) {
-        const auto tile = std::min(static_cast<std::size_t>(c.raster.y * down),
-                                   static_cast<std::size_t>(down - 1)) *
-                              tiles.across +
-                          std::min(static_cast<std::size_t>(c.raster.x * tiles.across),
-                                   static_cast<std::size_t>(tiles.across - 1));
+        const std::size_t tile = grid.cell(c.raster);
         const double value = luminance(c.value);
-        tiles.replicates[r][tile] += value;
-        if (with_excess)
-          excess[r][tile] += value * shadow_ray_excess(assemble(w.light, c.s, w.eye, c.t));
+        result.all.replicates[r][tile] += value;
+        if (!classified) continue;
+        const Path path = assemble(w.light, c.s, w.eye, c.t);
+        excess[r][tile] += value * shadow_ray_excess(path);
+        classes[r][configuration_text(path)] += value;
+        if (reach(scene, path).light) result.by_light.replicates[r][tile] += value;
       }
     }
     FOGBOW_CHECK(w.refused == 0);
   });
   // The mean over all samples of what lands on a tile, times the number of tiles, is its mean.
-  const double scale = static_cast<double>(tiles.count()) / rounds / width / height;
-  for (int r = 0; r < replicates; ++r)
-    for (std::size_t i = 0; i < tiles.count(); ++i) {
-      tiles.replicates[r][i] *= scale;
-      tiles.excess[i] += excess[r][i] * scale / replicates;
+  const double samples = static_cast<double>(rounds) * width * height;
+  const double scale = static_cast<double>(grid.size()) / samples;
+  for (int r = 0; r < replicates; ++r) {
+    for (std::size_t i = 0; i < grid.size(); ++i) {
+      result.all.replicates[r][i] *= scale;
+      result.by_light.replicates[r][i] *= scale;
+      result.all.excess[i] += excess[r][i] * scale / replicates;
     }
-  return tiles;
+    for (const auto& [configuration, value] : classes[r])
+      result.all.add_class(configuration, r, value / samples);
+  }
+  return result;
 }
 
-Tiles render_tiles_by_chains(const Scene& scene, const ChainSettings& settings, int replicates,
+Tiles render_tiles_by_chains(const Scene& scene, const ChainOptions& settings, int replicates,
                              double mutations_per_pixel, std::uint64_t seed) {
   Tiles tiles = empty_tiles(scene, replicates);
   RenderOptions options;
@@ -94,7 +118,9 @@ Tiles render_tiles_by_chains(const Scene& scene, const ChainSettings& settings, 
   options.samples_per_pixel = mutations_per_pixel;
   for (int r = 0; r < replicates; ++r) {
     options.seed = seed + static_cast<std::uint64_t>(r) * 0x9E3779B97F4A7C15;
-    const Image image = render(scene, options).image;
+    const RenderResult result = render(scene, options);
+    const Image& image = result.image;
+    for (const ClassShare& c : result.classes) tiles.add_class(c.configuration, r, c.value);
     for (int y = 0; y < image.height; ++y)
       for (int x = 0; x < image.width; ++x)
         tiles.replicates[r][y / kTile * tiles.across + x / kTile] +=

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <array>
+#include <map>
 #include <string>
 #include <vector>
 
@@ -24,22 +25,30 @@ struct Tiles {
   /// By how much Mitsuba's fault makes a tile too bright at most: every path whose x₂ can be
   /// connected to a lamp in fog counts as if it had been.
   std::vector<double> excess;
+  /// b_k^c by configuration, in each replicate; empty where the sampler does not tell.
+  std::map<std::string, std::vector<double>> classes{};
 
   std::size_t count() const { return excess.size(); }
   Estimate estimate(const std::vector<std::size_t>& tiles) const;
   double mean_excess(const std::vector<std::size_t>& tiles) const;
+  void add_class(const std::string& configuration, int replicate, double value);
 };
 
-/// One sample a pixel and round. Only bdpt can tell the `excess`.
-Tiles render_tiles(const Scene& scene, const Estimator& estimator, bool with_excess, int replicates,
-                   int rounds, std::uint64_t seed);
-struct ChainSettings {
+/// What independent samples make: all of it, and what light tracing can make too (reach()).
+struct Pictures {
+  Tiles all, by_light;
+};
+/// One sample a pixel and round. `classified`: with excess, classes and by_light, which need every
+/// path in one piece; the path tracer has none.
+Pictures render_tiles(const Scene& scene, const Estimator& estimator, bool classified,
+                      int replicates, int rounds, std::uint64_t seed);
+struct ChainOptions {
   std::string integrator;  ///< pssmlt or mlt
   int max_depth;
   std::string mutations;  ///< with weights; empty: the default ones
 };
 /// By independent renders.
-Tiles render_tiles_by_chains(const Scene& scene, const ChainSettings& settings, int replicates,
+Tiles render_tiles_by_chains(const Scene& scene, const ChainOptions& settings, int replicates,
                              double mutations_per_pixel, std::uint64_t seed);
 
 /// The reference of scenes/NAME where `scene`'s crop window lies, and its standard errors.

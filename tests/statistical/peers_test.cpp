@@ -21,7 +21,10 @@ using namespace testing;
 
 constexpr int kMaxDepth = 64;  // as the references
 constexpr int kReplicates = 32;
-constexpr int kTests = (10 * 4 + 2 * 8) * (256 + 16 + 1);
+/// A pixel; a replicate's bootstrap takes no less time.
+constexpr int kPilotMutations = 8;
+constexpr int kMostClasses = 40;
+constexpr int kTests = (10 * 7 + 2 * 8) * (256 + 16 + 1 + kMostClasses);
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 constexpr double kPower = 0.99;
 
@@ -30,24 +33,21 @@ bool is_long() { return std::getenv("FOGBOW_LONG") != nullptr; }
 struct Peer {
   std::string name;
   std::array<int, 4> crop;  ///< of the fast suite; width 0: only in the long one
-  int fast_rounds, long_rounds;
-  int pssmlt, mlt;         ///< mutations a pixel and replicate of the long suite
-  bool path_converges;     ///< next-event estimation reaches nearly all of the light
-  bool by_mitsuba = true;  ///< the reference; else by our own bdpt
+  bool path_converges;      ///< next-event estimation reaches nearly all of the light
+  bool by_mitsuba = true;   ///< the reference; else by our own bdpt
 };
 
 const std::vector<Peer>& peers() {
-  static const std::vector<Peer> all = {
-      {"cornell-fog", {32, 144, 64, 32}, 16, 8, 32, 64, true},
-      {"cornell-fog-g07", {0, 0, 0, 0}, 0, 8, 32, 64, true},
-      {"glass-sphere-fog", {16, 224, 64, 32}, 16, 48, 96, 256, false},
-      {"ring-caustic", {0, 0, 0, 0}, 0, 16, 32, 64, false},
-      {"ring-caustic-rough", {32, 208, 64, 32}, 16, 8, 32, 64, true},
-      {"pool", {0, 0, 0, 0}, 0, 64, 96, 256, false},
-      {"bulb", {0, 0, 0, 0}, 0, 32, 64, 256, false},
-      {"door-ajar", {0, 0, 0, 0}, 0, 32, 64, 128, false},
-      {"door-ajar-fog", {0, 0, 0, 0}, 0, 32, 64, 256, false},
-      {"caustic-beam", {0, 0, 0, 0}, 0, 32, 64, 128, false, false}};
+  static const std::vector<Peer> all = {{"cornell-fog", {32, 144, 64, 32}, true},
+                                        {"cornell-fog-g07", {0, 0, 0, 0}, true},
+                                        {"glass-sphere-fog", {16, 224, 64, 32}, false},
+                                        {"ring-caustic", {0, 0, 0, 0}, false},
+                                        {"ring-caustic-rough", {32, 208, 64, 32}, true},
+                                        {"pool", {0, 0, 0, 0}, false},
+                                        {"bulb", {0, 0, 0, 0}, false},
+                                        {"door-ajar", {0, 0, 0, 0}, false},
+                                        {"door-ajar-fog", {0, 0, 0, 0}, false},
+                                        {"caustic-beam", {0, 0, 0, 0}, false, false}};
   return all;
 }
 
@@ -99,17 +99,19 @@ std::vector<std::vector<std::size_t>> blocks_of(const std::vector<std::size_t>& 
   return result;
 }
 
-/// What is to be found with 99% probability, in parts of the value: of the mean, and of a block
-/// (0: of no block) that is not dark.
+/// What is to be found with 99% probability, in parts of the value: of the mean, and of a block or
+/// class (0: of none) that is not dark.
 struct Bias {
-  double mean, block;
+  double mean, part;
 };
+constexpr double kDark = 0.5;             // of the mean
+constexpr double kNotableClass = 0.05;    // of all light
+constexpr double kComparedClass = 0.002;  // the others are one
 
 /// Each tile, each block of tiles, and all of them together.
 template <class Theirs>
 void expect_equal(const std::string& name, const Tiles& ours, const Theirs& theirs,
                   const std::vector<std::size_t>& tiles, const Tiles& excess, const Bias& bias) {
-  constexpr double kDark = 0.5;  // parts of the mean
   ASSERT_FALSE(tiles.empty()) << name;
   const double brightness = theirs(tiles).mean;
   double least = 1, least_power = 1;
@@ -131,7 +133,7 @@ void expect_equal(const std::string& name, const Tiles& ours, const Theirs& thei
   };
   for (const std::size_t i : tiles) expect("tile " + std::to_string(i), {i}, 0);
   for (const auto& block : blocks_of(tiles, static_cast<std::size_t>(ours.across)))
-    expect("block of tile " + std::to_string(block.front()), block, bias.block);
+    expect("block of tile " + std::to_string(block.front()), block, bias.part);
   expect("mean", tiles, bias.mean);
   const Estimate a = ours.estimate(tiles), b = theirs(tiles);
   std::printf(
@@ -139,8 +141,72 @@ void expect_equal(const std::string& name, const Tiles& ours, const Theirs& thei
       "the mean, %g%% of a block is found with probability %.4f\n",
       name.c_str(), tiles.size(), least, a.mean / b.mean,
       std::hypot(a.standard_error, b.standard_error) / b.mean, excess.mean_excess(tiles) / b.mean,
-      100 * bias.mean, 100 * bias.block, least_power);
+      100 * bias.mean, 100 * bias.part, least_power);
   std::fflush(stdout);
+}
+
+/// Each class of paths that notably carries light, and all others together.
+void expect_equal_classes(const std::string& name, const Tiles& ours, const Tiles& bdpt,
+                          const Bias& bias) {
+  double b = 0;
+  for (const auto& [configuration, values] : bdpt.classes) b += estimate(values).mean;
+  std::map<std::string, std::array<std::vector<double>, 2>> compared;
+  const Tiles* sides[] = {&ours, &bdpt};
+  for (int side = 0; side < 2; ++side)
+    for (const auto& [configuration, values] : sides[side]->classes) {
+      const auto known = bdpt.classes.find(configuration);
+      const bool alone =
+          known != bdpt.classes.end() && estimate(known->second).mean > kComparedClass * b;
+      auto& sums = compared[alone ? configuration : "the others"][side];
+      sums.resize(values.size());
+      for (std::size_t r = 0; r < values.size(); ++r) sums[r] += values[r];
+    }
+  EXPECT_LE(compared.size(), static_cast<std::size_t>(kMostClasses)) << name;
+  double least = 1, least_power = 1;
+  for (const auto& [configuration, values] : compared) {
+    ASSERT_FALSE(values[0].empty() || values[1].empty()) << name << ", " << configuration;
+    const Estimate x = estimate(values[0]), y = estimate(values[1]);
+    const double p = welch(x, y);
+    EXPECT_GT(p, kLevel) << name << ", " << configuration << ": " << x.mean << " ± "
+                         << x.standard_error << " against " << y.mean << " ± " << y.standard_error;
+    least = std::min(least, p);
+    if (y.mean < kNotableClass * b || configuration == "the others") continue;
+    const double seen = power(x, y, bias.part * y.mean, kLevel);
+    EXPECT_GE(seen, kPower) << name << ", " << configuration << ": standard errors "
+                            << x.standard_error / y.mean << ", " << y.standard_error / y.mean;
+    least_power = std::min(least_power, seen);
+  }
+  std::printf(
+      "%-32s %3zu classes, least p %.2g; a bias of %g%% of a notable one is found with probability "
+      "%.4f\n",
+      name.c_str(), compared.size(), least, 100 * bias.part, least_power);
+}
+
+/// `render`(samples a pixel, seed) with as many as `bias` takes, found by an independent pilot.
+template <class Render>
+auto render_enough(const Render& render, int pilot_samples, const Bias& bias, std::uint64_t seed) {
+  constexpr double kSafety = 1.5;  // the pilot's own errors are uncertain
+  const auto pilot = render(pilot_samples, seed);
+  const auto tiles_of = [](const auto& result) -> const Tiles& {
+    if constexpr (requires { result.all; })
+      return result.all;
+    else
+      return result;
+  };
+  const Tiles& tiles = tiles_of(pilot);
+  double most = 1;
+  const auto need = [&](const Estimate& e, double part) {
+    most = std::max(most, samples_needed(e, part * e.mean, kLevel, kPower));
+  };
+  const Estimate mean = tiles.estimate(all_tiles(tiles));
+  need(mean, bias.mean);
+  for (const auto& block : blocks_of(all_tiles(tiles), static_cast<std::size_t>(tiles.across)))
+    if (const Estimate e = tiles.estimate(block); e.mean > kDark * mean.mean) need(e, bias.part);
+  double b = 0;
+  for (const auto& [configuration, values] : tiles.classes) b += estimate(values).mean;
+  for (const auto& [configuration, values] : tiles.classes)
+    if (const Estimate e = estimate(values); e.mean > kNotableClass * b) need(e, bias.part);
+  return render(static_cast<int>(std::ceil(kSafety * most * pilot_samples)), seed + 1);
 }
 
 class Peers : public ::testing::TestWithParam<Peer> {};
@@ -154,35 +220,51 @@ TEST_P(Peers, PicturesAgreeWithMitsuba) {
   const Scene scene(
       load_mitsuba_xml("scenes/" + peer.name + "/scene.xml", builtin_media(), options, warnings));
   const EstimatorSettings settings{.max_depth = kMaxDepth};
-  const int rounds = is_long() ? peer.long_rounds : peer.fast_rounds;
   const Bias bias = is_long() ? Bias{0.01, 0.05} : Bias{0.03, 0};
+  const auto independent = [&](const Estimator& estimator, bool classified, std::uint64_t stream) {
+    const auto rendering = [&](int rounds, std::uint64_t seed) {
+      return render_tiles(scene, estimator, classified, kReplicates, rounds, seed);
+    };
+    constexpr int kFastRounds = 16, kPilotRounds = 2;
+    return is_long() ? render_enough(rendering, kPilotRounds, bias, suite_seed() + stream)
+                     : rendering(kFastRounds, suite_seed() + stream);
+  };
 
-  const auto bdpt = make_bdpt(scene, settings);
-  const Tiles ours = render_tiles(scene, *bdpt, true, kReplicates, rounds, suite_seed() + 70);
+  const Pictures bdpt = independent(*make_bdpt(scene, settings), true, 70);
+  const Tiles& ours = bdpt.all;
   const Reference reference = read_reference(peer.name, scene);
   const auto theirs = [&](const std::vector<std::size_t>& tiles) {
     return reference.estimate(tiles, ours);
   };
+  const auto of = [](const Tiles& tiles) {
+    return [&tiles](const std::vector<std::size_t>& part) { return tiles.estimate(part); };
+  };
   const auto tiles = believable_tiles(reference, ours);
-  const Tiles none{ours.across, {}, std::vector<double>(ours.count())};
-  expect_equal(peer.name + (peer.by_mitsuba ? ": bdpt, Mitsuba" : ": bdpt, reference"), ours,
-               theirs, tiles, peer.by_mitsuba ? ours : none, bias);
+  const Tiles none{ours.across, {}, std::vector<double>(ours.count()), {}};
+  const std::string they = peer.by_mitsuba ? ", Mitsuba" : ", reference";
+  const Tiles& excess = peer.by_mitsuba ? ours : none;
+  expect_equal(peer.name + ": bdpt" + they, ours, theirs, tiles, excess, bias);
   if (!is_long()) return;
 
   if (peer.path_converges) {
-    const auto path = make_path_tracer(scene, settings);
-    const Tiles by_path = render_tiles(scene, *path, false, kReplicates, rounds, suite_seed() + 80);
-    expect_equal(peer.name + ": path, Mitsuba", by_path, theirs, tiles, ours, bias);
+    const Tiles path = independent(*make_path_tracer(scene, settings), false, 80).all;
+    expect_equal(peer.name + ": path" + they, path, theirs, tiles, excess, bias);
   }
+  const Tiles light = independent(*make_light_tracer(scene, settings), true, 100).by_light;
+  expect_equal(peer.name + ": light, bdpt", light, of(bdpt.by_light), all_tiles(ours), none, bias);
   // Whatever the reference cannot tell, two of our own samplers must agree on.
-  for (const auto& [integrator, mutations] :
-       {std::pair<std::string, int>("pssmlt", peer.pssmlt), {"mlt", peer.mlt}}) {
-    const Tiles chains = render_tiles_by_chains(scene, {integrator, kMaxDepth, ""}, kReplicates,
-                                                mutations, suite_seed() + 90);
-    expect_equal(
-        peer.name + ": " + integrator + ", bdpt", chains,
-        [&](const std::vector<std::size_t>& part) { return ours.estimate(part); }, all_tiles(ours),
-        none, bias);
+  for (const std::string integrator : {"pssmlt", "mlt"}) {
+    const Tiles chains = render_enough(
+        [&](int mutations, std::uint64_t seed) {
+          return render_tiles_by_chains(scene, {integrator, kMaxDepth, ""}, kReplicates, mutations,
+                                        seed);
+        },
+        kPilotMutations, bias, suite_seed() + 90);
+    expect_equal(peer.name + ": " + integrator + ", bdpt", chains, of(ours), all_tiles(ours), none,
+                 bias);
+    expect_equal(peer.name + ": " + integrator + they, chains, theirs, tiles, excess, bias);
+    if (!chains.classes.empty())
+      expect_equal_classes(peer.name + ": " + integrator + ", bdpt", chains, ours, bias);
   }
 }
 
@@ -197,23 +279,32 @@ class MutationAlone : public ::testing::TestWithParam<std::tuple<std::string, st
 /// Each mutation together with large steps, which alone make a chain ergodic.
 TEST_P(MutationAlone, AgreesWithBdpt) {
   if (!is_long()) GTEST_SKIP() << "in the long suite";
-  constexpr int kRounds = 48, kMutations = 256;
+  const Bias bias{0.01, 0.05};
   const auto& [scene_name, mutation] = GetParam();
   std::vector<std::string> warnings;
   const Scene scene(
       load_mitsuba_xml("scenes/" + scene_name + "/scene.xml", builtin_media(), {}, warnings));
   static std::map<std::string, Tiles> by_bdpt;
   if (!by_bdpt.contains(scene_name))
-    by_bdpt[scene_name] = render_tiles(scene, *make_bdpt(scene, {.max_depth = kMaxDepth}), false,
-                                       kReplicates, kRounds, suite_seed() + 110);
+    by_bdpt[scene_name] = render_enough(
+        [&](int rounds, std::uint64_t seed) {
+          return render_tiles(scene, *make_bdpt(scene, {.max_depth = kMaxDepth}), false,
+                              kReplicates, rounds, seed)
+              .all;
+        },
+        2, bias, suite_seed() + 110);
   const Tiles& bdpt = by_bdpt[scene_name];
   const std::string mutations = mutation + ":1,large_step:1";
-  const Tiles chains = render_tiles_by_chains(scene, {"mlt", kMaxDepth, mutations}, kReplicates,
-                                              kMutations, suite_seed() + 120);
-  expect_equal(scene_name + ": " + mutation, chains,
-               [&](const std::vector<std::size_t>& part) { return bdpt.estimate(part); },
-               all_tiles(bdpt), Tiles{bdpt.across, {}, std::vector<double>(bdpt.count())},
-               {0.01, 0.05});
+  const Tiles chains = render_enough(
+      [&](int per_pixel, std::uint64_t seed) {
+        return render_tiles_by_chains(scene, {"mlt", kMaxDepth, mutations}, kReplicates, per_pixel,
+                                      seed);
+      },
+      kPilotMutations, bias, suite_seed() + 120);
+  expect_equal(
+      scene_name + ": " + mutation, chains,
+      [&](const std::vector<std::size_t>& part) { return bdpt.estimate(part); }, all_tiles(bdpt),
+      Tiles{bdpt.across, {}, std::vector<double>(bdpt.count()), {}}, bias);
 }
 
 std::vector<std::string> mutations_but_large_steps() {
