@@ -22,7 +22,7 @@ using namespace testing;
 constexpr int kMaxDepth = 64;  // as the references
 constexpr int kReplicates = 32;
 /// A pixel; a replicate's bootstrap takes no less time.
-constexpr int kPilotMutations = 8;
+constexpr int kPilotMutations = 4;
 constexpr int kMostClasses = 40;
 constexpr int kTests = (10 * 7 + 2 * 8) * (256 + 16 + 1 + kMostClasses);
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
