@@ -2,6 +2,7 @@
 #pragma once
 #include <chrono>
 #include <functional>
+#include <limits>
 #include <optional>
 #include <vector>
 
@@ -28,21 +29,28 @@ struct ChainRecord {
     if (of_state_.size() < size)
       for (auto* v : {&of_state_, &length_share, &length_squares}) v->resize(size);
     of_state_[k] += part;
+    shortest_ = std::min(shortest_, size - 1);
+    longest_ = std::max(longest_, size - 1);
   }
   /// All contributions of a state of this weight have been gathered.
   void settle(double weight) {
-    for (std::size_t k = 0; k < of_state_.size(); ++k) {
+    for (std::size_t k = shortest_; k <= longest_; ++k) {
       length_share[k] += weight * of_state_[k];
       length_squares[k] += weight * sqr(of_state_[k]);
       of_state_[k] = 0;
     }
+    shortest_ = kNone;
+    longest_ = 0;
   }
 
   void serialize(std::ostream& out) const;
   static ChainRecord deserialize(std::istream& in);
 
  private:
+  static constexpr std::size_t kNone = std::numeric_limits<std::size_t>::max();
+
   std::vector<double> of_state_;
+  std::size_t shortest_ = kNone, longest_ = 0;  ///< lengths of the state's contributions
 };
 
 /// Film::kGroups independent groups of chains of one State; every chain is a function of (seed,
@@ -143,16 +151,17 @@ class ChainEnsemble {
       ChainRecord& record = records_[i];
       double all = 0, f_star = 0;  // in the unit of the contributions
       for (const Contribution& c : x.contributions()) {
-        all += luminance(c.value);
-        f_star += luminance(c.value) * x.importance()(c.raster);
+        const double part = luminance(c.value);
+        all += part;
+        f_star += part * x.importance()(c.raster);
       }
+      const double scale = weight / f_star;
       for (const Contribution& c : x.contributions()) {
-        splats.splat(c.raster, c.value * (weight / f_star), group_of(i), uniform2(offsets));
+        splats.splat(c.raster, c.value * scale, group_of(i), uniform2(offsets));
         record.gather(c.k, luminance(c.value) / f_star);
       }
       record.settle(weight);
-      if constexpr (requires { x.path(); })
-        record.classes.add(path_class(x.path()), weight * all / f_star);
+      if constexpr (requires { x.path(); }) record.classes.add(path_class(x.path()), all * scale);
     };
   }
 

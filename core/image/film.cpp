@@ -56,13 +56,23 @@ struct Choice {
   double weight = 0;
 };
 
+/// Without the call that std::floor is.
+int floor_to_int(double x) {
+  const int i = static_cast<int>(x);
+  return i - (x < i);
+}
+
 /// Pixel j of a row or column with probability |h(x − c_j)| / S, S = Σ_j |h(x − c_j)|, and the
 /// weight ±S / Z_j that makes the pixel's expected value ∫ h(x − c_j) f(x) dx / Z_j.
 Choice choose(const ReconstructionFilter& h, const std::vector<double>& mass, double x, double u) {
   const double r = h.radius();
   const int n = static_cast<int>(mass.size());
-  const int first = std::max(0, static_cast<int>(std::ceil(x - r - 0.5)));
-  const int last = std::min(n - 1, static_cast<int>(std::floor(x + r - 0.5)));
+  const int first = std::max(0, -floor_to_int(0.5 - (x - r)));
+  const int last = std::min(n - 1, floor_to_int(x + r - 0.5));
+  if (first == last) {
+    const double value = h.evaluate(x - (first + 0.5));
+    return value == 0 ? Choice() : Choice{first, value / mass[first]};
+  }
   std::array<double, kMaxCandidates> values;
   double sum = 0;
   for (int j = first; j <= last; ++j)

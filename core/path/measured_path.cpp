@@ -13,7 +13,7 @@ double to_measure(const Scene& scene, const Vertex& x, const Vertex& y, const Ed
 }
 
 MeasuredPath& MeasuredPath::operator=(const MeasuredPath& x) {
-  reserve(x.capacity());
+  if (capacity() < x.capacity()) reserve(x.capacity());
   vertices_ = x.vertices_;
   edges_ = x.edges_;
   transport_ = x.transport_;
