@@ -60,6 +60,13 @@ struct InfoArguments {
   IntegratorArguments integrator;
 };
 
+struct ExplainArguments {
+  SceneArguments scene;
+  std::uint64_t samples = 200'000;  ///< of BDPT
+  std::uint64_t seed = 0;
+  int threads = 0;
+};
+
 struct CompareArguments {
   std::string a, b;        ///< b is the reference
   std::string difference;  ///< EXR of a − b; empty: none
@@ -73,6 +80,7 @@ struct CompareArguments {
 ExitCode run_render(const RenderArguments& arguments);
 ExitCode run_info(const InfoArguments& arguments);
 ExitCode run_check(const SceneArguments& arguments);
+ExitCode run_explain(const ExplainArguments& arguments);
 ExitCode run_compare(const CompareArguments& arguments);
 
 }  // namespace fogbow::cli

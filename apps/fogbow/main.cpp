@@ -61,6 +61,12 @@ void add_scene_arguments(CLI::App& app, SceneArguments& scene) {
                "Refuse files that are not in the scene's folder");
 }
 
+void add_threads(CLI::App& app, int& threads) {
+  app.add_option("-t,--threads", threads, "Threads; 0: all")
+      ->check(CLI::Range(0, 4096))
+      ->type_name("N");
+}
+
 void add_integrator_arguments(CLI::App& app, IntegratorArguments& integrator) {
   app.add_option(
          "--integrator", integrator.name,
@@ -71,9 +77,7 @@ void add_integrator_arguments(CLI::App& app, IntegratorArguments& integrator) {
                [&integrator](const std::string& text) {
                  integrator.overrides.push_back(parse_override(text));
                });
-  app.add_option("-t,--threads", integrator.threads, "Threads; 0: all")
-      ->check(CLI::Range(0, 4096))
-      ->type_name("N");
+  add_threads(app, integrator.threads);
 }
 
 void add_render_stop(CLI::App& app, RenderArguments& arguments) {
@@ -137,6 +141,20 @@ void add_compare(CLI::App& program, CompareArguments& arguments, std::function<E
   app.callback([&] { run = [&] { return run_compare(arguments); }; });
 }
 
+void add_explain(CLI::App& program, ExplainArguments& arguments, std::function<ExitCode()>& run) {
+  CLI::App& app =
+      *program.add_subcommand("explain", "Say what makes a scene hard, and what to do about it");
+  add_scene_arguments(app, arguments.scene);
+  app.add_option("--samples", arguments.samples, "Samples of BDPT to look at")
+      ->check(CLI::Range(std::uint64_t{8}, std::uint64_t{1} << 40))
+      ->type_name("N")
+      ->capture_default_str();
+  add_parsed(app, "--seed", "S", "Seed of all random numbers (default 0)",
+             [&](const std::string& text) { arguments.seed = parse_seed(text); });
+  add_threads(app, arguments.threads);
+  app.callback([&] { run = [&] { return run_explain(arguments); }; });
+}
+
 int fail(ErrorKind kind, const std::string& message) {
   std::fflush(stdout);
   print_message(LogLevel::Error, message);
@@ -154,6 +172,7 @@ int run_program(int argc, char** argv) {
   RenderArguments render;
   InfoArguments info;
   SceneArguments check;
+  ExplainArguments explain;
   CompareArguments compare;
   render.command.assign(argv, argv + argc);
   add_render(app, render, run);
@@ -165,6 +184,7 @@ int run_program(int argc, char** argv) {
   CLI::App& check_app = *app.add_subcommand("check", "Load a scene and print every warning");
   add_scene_arguments(check_app, check);
   check_app.callback([&] { run = [&] { return run_check(check); }; });
+  add_explain(app, explain, run);
   add_compare(app, compare, run);
 
   try {

@@ -33,6 +33,9 @@ class BoundaryGroup {
   double volume() const;
   /// Whether the point lies strictly inside; only for closed groups. A sphere answers exactly.
   bool contains(const Vec3& p) const;
+  /// Whether this boundary runs partly inside and partly outside of `other`, which is closed; told
+  /// from points spread over it, so that a slight touch may escape.
+  bool crosses(const BoundaryGroup& other) const;
 
  private:
   struct Impl;

@@ -13,6 +13,7 @@
 
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/sphere.h"
+#include "core/math/spread.h"
 #include "core/util/check.h"
 
 namespace fogbow {
@@ -29,6 +30,10 @@ using Triangle = std::array<std::uint32_t, 3>;
 /// Vertices nearer than this times the radius of the group are one: files round coordinates.
 constexpr double kWeld = 1e-6;
 constexpr std::size_t kMostIntersections = 10000;
+/// Points of a group and of each shape that are looked at, and how far from the surface, in parts
+/// of the shape's size.
+constexpr int kMostPoints = 4096, kLeastPoints = 16, kPointsOfShape = 256;
+constexpr double kAside = 1e-4;
 
 Point to_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 
@@ -79,7 +84,8 @@ using Counts = std::map<std::uint32_t, std::size_t>;  ///< by shape
 
 struct BoundaryGroup::Impl {
   std::vector<BoundaryDefect> defects;
-  std::vector<const Sphere*> spheres;  ///< all shapes of the group, where all are spheres
+  std::vector<std::array<Vec3, 2>> both_sides;  ///< of points spread over the surface
+  std::vector<const Sphere*> spheres;           ///< all shapes of the group, where all are spheres
   std::vector<Vec3> vertices;
   std::vector<Triangle> triangles;
   std::vector<std::uint32_t> shape_of;  ///< of each triangle
@@ -92,6 +98,18 @@ struct BoundaryGroup::Impl {
               const std::string& many) {
     for (const auto& [shape, count] : counts)
       defects.push_back({kind, shape, std::to_string(count) + " " + (count == 1 ? one : many)});
+  }
+
+  void spread_points(std::span<const Shape* const> shapes) {
+    const int count =
+        std::clamp(kMostPoints / static_cast<int>(shapes.size()), kLeastPoints, kPointsOfShape);
+    for (const Shape* shape : shapes) {
+      const double aside = kAside * shape->bounds().radius();
+      for (int i = 0; i < count; ++i) {
+        const SurfacePoint x = shape->sample(spread_point(i, count));
+        both_sides.push_back({x.position + aside * x.n_g, x.position - aside * x.n_g});
+      }
+    }
   }
 
   // --- Spheres
@@ -266,6 +284,7 @@ struct BoundaryGroup::Impl {
 BoundaryGroup::BoundaryGroup(std::span<const Shape* const> shapes)
     : impl_(std::make_unique<Impl>()) {
   FOGBOW_CHECK(!shapes.empty());
+  impl_->spread_points(shapes);
   for (const Shape* shape : shapes)
     if (const auto* sphere = dynamic_cast<const Sphere*>(shape)) impl_->spheres.push_back(sphere);
   if (impl_->spheres.size() == shapes.size()) {
@@ -294,6 +313,17 @@ bool BoundaryGroup::contains(const Vec3& p) const {
   const auto around = std::ranges::count_if(
       impl_->spheres, [&](const Sphere* s) { return length(p - s->center()) < s->radius(); });
   return around % 2 == 1;
+}
+
+bool BoundaryGroup::crosses(const BoundaryGroup& other) const {
+  bool inside = false, outside = false;
+  for (const auto& [front, back] : impl_->both_sides) {
+    const int sides = other.contains(front) + other.contains(back);
+    inside |= sides == 2;
+    outside |= sides == 0;
+    if (inside && outside) return true;
+  }
+  return false;
 }
 
 }  // namespace fogbow

@@ -33,6 +33,20 @@ Scene::BoundaryReport::BoundaryReport(const std::vector<Surface>& surfaces) {
     group.boundary.emplace(shapes);
     report_defects(surfaces, group);
   }
+  report_overlaps(surfaces);
+}
+
+void Scene::BoundaryReport::report_overlaps(const std::vector<Surface>& surfaces) {
+  for (auto a = groups_.begin(); a != groups_.end(); ++a)
+    for (auto b = a + 1; b != groups_.end(); ++b) {
+      if (!a->boundary->closed() || !b->boundary->closed()) continue;
+      if (!a->boundary->crosses(*b->boundary) && !b->boundary->crosses(*a->boundary)) continue;
+      messages_.push_back(describe(surfaces[b->surfaces.front()]) + " bounds " +
+                          describe(b->interior) + " and overlaps " + describe(a->interior) +
+                          ", which " + describe(surfaces[a->surfaces.front()]) +
+                          " bounds: where both are, what holds is the boundary crossed last; "
+                          "nest one in the other, or keep them apart");
+    }
 }
 
 void Scene::BoundaryReport::report_defects(const std::vector<Surface>& surfaces,

@@ -34,6 +34,7 @@ struct Scene::BoundaryReport {
     std::optional<BoundaryGroup> boundary;
   };
   void report_defects(const std::vector<Surface>& surfaces, const Group& group);
+  void report_overlaps(const std::vector<Surface>& surfaces);
 
   std::vector<Group> groups_;
   std::vector<std::string> messages_;

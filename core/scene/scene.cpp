@@ -3,9 +3,9 @@
 
 #include <algorithm>
 #include <array>
-#include <numbers>
 #include <set>
 
+#include "core/math/spread.h"
 #include "core/scene/boundary_report.h"
 #include "core/scene/emitters.h"
 #include "core/util/log.h"
@@ -19,22 +19,6 @@ constexpr int kAnchorsPerShape = 8, kAnchorsTried = 8;
 /// Cosine below which the facing side of a boundary is not trusted.
 constexpr double kGrazing = 1e-3;
 constexpr int kEscapeRays = 64;
-
-/// Spread over the unit square: a shifted grid and van der Corput's sequence. The golden ratio
-/// keeps points off edges between faces of commensurable areas, where rays to them would meet
-/// either face.
-Vec2 spread_point(int i, int n) {
-  constexpr double kShift = 2 - std::numbers::phi;
-  double y = 0, place = 0.5;
-  for (int rest = i; rest > 0; rest /= 2, place /= 2) y += place * (rest % 2);
-  return {(i + kShift) / n, y + kShift / n};
-}
-
-Vec3 spread_direction(int i, int n) {
-  const Vec2 u = spread_point(i, n);
-  const double z = 1 - 2 * u.x, r = std::sqrt(1 - z * z);
-  return {r * std::cos(2 * kPi * u.y), r * std::sin(2 * kPi * u.y), z};
-}
 
 Vec3 camera_position(const Sensor& sensor) { return sensor.sample_position(Vec2(0.5)); }
 

@@ -44,6 +44,25 @@ class Render(CliTest):
         self.expect(0, "render", "scene.xml", "--spp", "4", "--integrator", "file")
         self.assertEqual(self.report()["integrator"], "path")
 
+    def test_explain(self):
+        easy = self.expect(0, "explain", "scene.xml", "--samples", "20000").stdout.decode()
+        self.assertIn("nothing here is hard", easy)
+        ball = ('<shape type="sphere"><point name="center" x="0" y="0.6" z="0"/><float name="radius" value="0.3"/>'
+                '<bsdf type="dielectric"/></shape>')
+        bulb = '<emitter type="point"><point name="position" x="0" y="0.6" z="0"/></emitter>'
+        self.write("bulb.xml", scene_text(emitter="", more=ball + bulb))
+        hard = self.expect(0, "explain", "bulb.xml", "--samples", "20000").stdout.decode()
+        self.assertNotIn("nothing here is hard", hard)
+        self.assertRegex(hard, r"what next-event estimation can make +0\.00%")
+        self.assertRegex(hard, r"- 100% of the light are caustics on surfaces:")
+        self.assertIn("100% of the light from point lights first meets a specular surface", hard)
+        self.write("dark.xml", scene_text(turn=-90))
+        self.assertIn("no light reaches the camera", self.expect(0, "explain", "dark.xml").stdout.decode())
+        self.write("odd.xml", scene_text(more=UNUSED_PROPERTY))
+        self.assertIn("1 warning about the scene", self.expect(0, "explain", "odd.xml").stdout.decode())
+        self.expect(3, "explain", "odd.xml", "--strict", message="--strict")
+        self.expect(2, "explain", "scene.xml", "--samples", "0", message="--samples")
+
     def test_errors(self):
         self.expect(2, "render", "scene.xml", "--integrator", "radiosity", message="radiosity")
         self.expect(2, "render", "scene.xml", "--set", "integrator.no_such_property=1", message="no_such_property")

@@ -127,6 +127,25 @@ TEST(Boundary, MadeOfSeveralShapesIsWelded) {
   EXPECT_NEAR(group.volume(), 8, 1e-5);
 }
 
+TEST(Boundary, CrossesWhatItCutsThrough) {
+  const auto a = group_of({cube(1)}), b = group_of({cube(1, Vec3(0.5, 0.6, 0.7))});
+  EXPECT_TRUE(a.crosses(b));
+  EXPECT_TRUE(b.crosses(a));
+  // Nothing of a thin rod lies inside of the cube that it pierces but its own boundary.
+  const auto rod = group_of({make_cube(Transform::scale({0.01, 0.01, 5}))});
+  EXPECT_TRUE(rod.crosses(a));
+  const auto ball = group_of({make_sphere(Vec3(1, 0, 0), 0.5)});
+  EXPECT_TRUE(ball.crosses(a));
+  EXPECT_TRUE(a.crosses(ball));
+  // Nested, apart, or sharing a face.
+  const auto inner = group_of({make_sphere(Vec3(0), 0.9)}), beside = group_of({cube(1, {2, 0, 0})}),
+             within = group_of({cube(0.5, {0.5, 0, 0})});
+  for (const auto* other : {&inner, &beside, &within}) {
+    EXPECT_FALSE(other->crosses(a));
+    EXPECT_FALSE(a.crosses(*other));
+  }
+}
+
 TEST(Boundary, ContainsWhatIsInside) {
   const auto hollow_boxes = group_of({cube(1), cube(0.5, Vec3(0), true)});
   const auto hollow_spheres =

@@ -174,6 +174,10 @@ TEST(Scene, ReportsBoundariesThatOverlap) {
   const Scene crossed(seen_from(
       Vec3(0), {boundary(cube(1), a, nullptr, "cube"), boundary(slab, b, nullptr, "slab")}));
   EXPECT_EQ(crossed.medium_at(Vec3(0)), b.get());
+  EXPECT_EQ(count_with(crossed,
+                       "shape 'slab' bounds medium 'b' and overlaps medium 'a', which "
+                       "shape 'cube' bounds"),
+            1);
   EXPECT_EQ(count_with(crossed, "the camera lies within the closed boundary of medium 'a'"), 1);
 }
 

@@ -1,0 +1,107 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "mlt/light_census.h"
+
+#include <gtest/gtest.h>
+
+#include "core/estimators/sampling.h"
+#include "core/geometry/shapes.h"
+#include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/emitters.h"
+#include "tests/helpers/statistics.h"
+#include "tests/helpers/test_scenes.h"
+
+namespace fogbow {
+namespace {
+
+using testing::make_test_scene;
+
+constexpr std::uint64_t kSamples = 1 << 17;
+constexpr EstimatorSettings kSettings{.max_depth = 12};
+
+void expect_same(const ReplicateMean& a, const testing::Estimate& b) {
+  EXPECT_GT(testing::welch({a.mean, a.standard_error, Film::kGroups}, b), 1e-5)
+      << a.mean << " ± " << a.standard_error << " against " << b.mean << " ± " << b.standard_error;
+}
+
+/// Mean luminance of the contributions that `counts` wants, in independent replicates.
+template <class Counts>
+testing::Estimate mean_of(const Estimator& estimator, const Counts& counts) {
+  constexpr int kReplicates = 32;
+  std::vector<double> means(kReplicates);
+  Workspace w;
+  for (int r = 0; r < kReplicates; ++r)
+    for (std::uint64_t i = 0; i < kSamples / kReplicates; ++i) {
+      Rng rng(7, RngDomain::Test, static_cast<std::uint64_t>(r), i);
+      RandomStream stream(rng);
+      estimator.sample(stream, stream, w);
+      for (const Contribution& c : w.contributions)
+        if (counts(w, c)) means[r] += luminance(c.value) * kReplicates / kSamples;
+    }
+  return testing::estimate(means);
+}
+
+/// Light tracing tells caustics by what its subpath met first.
+TEST(LightCensus, FindsWhatOtherEstimatorsFind) {
+  for (const char* name : {"surfaces", "glass-sphere-fog", "water", "two-kinds-of-glass"}) {
+    SCOPED_TRACE(name);
+    const Scene scene(make_test_scene(name));
+    const LightCensus census = take_light_census(scene, kSettings, kSamples, 1);
+    const auto light = make_light_tracer(scene, kSettings);
+    const auto caustic = [](bool in_medium) {
+      return [in_medium](const Workspace& w, const Contribution& c) {
+        std::size_t i = 1;
+        while (i < static_cast<std::size_t>(c.s) && w.light[i].x.degenerate) ++i;
+        return i > 1 && i < static_cast<std::size_t>(c.s) && w.light[i].x.in_medium() == in_medium;
+      };
+    };
+    testing::Estimate seen_by_lens = mean_of(*light, caustic(false));
+    const testing::Estimate in_media = mean_of(*light, caustic(true));
+    seen_by_lens.mean += in_media.mean;
+    seen_by_lens.standard_error = std::hypot(seen_by_lens.standard_error, in_media.standard_error);
+    ReplicateMean direct{
+        census.surface_caustic.mean + census.volume_caustic.mean - census.caustic_seen_through.mean,
+        std::hypot(census.surface_caustic.standard_error, census.volume_caustic.standard_error,
+                   census.caustic_seen_through.standard_error)};
+    if (seen_by_lens.mean > 0)
+      expect_same(direct, seen_by_lens);
+    else
+      EXPECT_EQ(direct.mean, 0);
+    expect_same(census.seen_light, mean_of(*make_seen_light(scene, kSettings),
+                                           [](const auto&, const auto&) { return true; }));
+    EXPECT_NEAR(census.seen_light.mean + census.by_next_event.mean + census.surface_caustic.mean +
+                    census.volume_caustic.mean,
+                census.luminance.mean, 1e-9 * census.luminance.mean);
+  }
+}
+
+TEST(LightCensus, KnowsThatEqualSamplesAreEasy) {
+  SceneDescription sky = make_test_scene("surfaces");
+  sky.surfaces.clear();
+  sky.emitters = {make_constant_emitter(RGB(2))};
+  const LightCensus census = take_light_census(Scene(std::move(sky)), kSettings, 4096, 1);
+  expect_same(census.luminance, {2, 0, 1e9});
+  EXPECT_DOUBLE_EQ(census.seen_light.mean, census.luminance.mean);
+  // The technique that connects the sky to the pinhole makes them a little unequal.
+  EXPECT_GT(census.half_in, 0.45);
+  EXPECT_LE(census.half_in, 0.5);
+  EXPECT_EQ(census.dirac_lit_through, 0);
+  EXPECT_EQ(census.seen_through, 0);
+}
+
+TEST(LightCensus, SeesPointLightsShutUpInGlass) {
+  SceneDescription d = make_test_scene("surfaces");
+  for (Surface& s : d.surfaces) s.emitter = nullptr;
+  Surface ball = d.surfaces.front();
+  ball.shape = make_sphere(Vec3(0, 0.5, 0), 0.2);
+  ball.bsdf = make_dielectric(1.5);
+  d.surfaces.push_back(std::move(ball));
+  d.emitters = {make_point_emitter(Vec3(0, 0.5, 0), RGB(1))};
+  const LightCensus census = take_light_census(Scene(std::move(d)), kSettings, 1 << 14, 1);
+  EXPECT_EQ(census.dirac_lit_through, 1);
+  EXPECT_GT(census.seen_through, 0);
+  EXPECT_EQ(census.by_next_event.mean, 0);
+  EXPECT_GT(census.surface_caustic.mean, 0);
+}
+
+}  // namespace
+}  // namespace fogbow
