@@ -2,6 +2,7 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/scene/medium.h"
 #include "core/scene/phase_function.h"
@@ -11,6 +12,13 @@ namespace fogbow {
 std::shared_ptr<const PhaseFunction> make_isotropic_phase();
 /// Henyey and Greenstein 1941; g in (−1, 1).
 std::shared_ptr<const PhaseFunction> make_henyey_greenstein(double g);
+std::shared_ptr<const PhaseFunction> make_rayleigh_phase();
+/// (1 − weight) · first + weight · second; weight in [0, 1].
+std::shared_ptr<const PhaseFunction> make_blend_phase(std::shared_ptr<const PhaseFunction> first,
+                                                      std::shared_ptr<const PhaseFunction> second,
+                                                      double weight);
+/// Values in any unit at equal steps of cosθ from −1 to 1, linear in between.
+std::shared_ptr<const PhaseFunction> make_tabulated_phase(const std::vector<double>& values);
 
 /// Chromatic; albedo = σ_s/σ_t in [0, 1]; `emission` is radiance per unit length and needs σ_t > 0
 /// in some channel. Throws std::domain_error on negative or non-finite coefficients.

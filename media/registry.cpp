@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "media/registry.h"
 
+#include <algorithm>
+#include <charconv>
+#include <stdexcept>
+
 #include "media/media.h"
 
 namespace fogbow {
@@ -13,6 +17,48 @@ std::shared_ptr<const PhaseFunction> hg(Properties& p) {
   const double g = p.number("g", 0.8);
   if (!(g > -1 && g < 1)) p.fail("g", "\"g\" must lie strictly between -1 and 1");
   return make_henyey_greenstein(g);
+}
+
+std::shared_ptr<const PhaseFunction> rayleigh(Properties&) { return make_rayleigh_phase(); }
+
+std::shared_ptr<const PhaseFunction> blendphase(Properties& p) {
+  const double weight = p.required_number("weight");
+  if (!(weight >= 0 && weight <= 1)) p.fail("weight", "\"weight\" must lie between 0 and 1");
+  const auto parts = p.take<PhaseFunction>();
+  if (parts.size() != 2)
+    throw Error(ErrorKind::Scene, p.where(),
+                "phase \"blendphase\" needs two nested phase functions, found " +
+                    std::to_string(parts.size()));
+  return make_blend_phase(parts[0], parts[1], weight);
+}
+
+/// Numbers between commas or space.
+std::vector<double> numbers(Properties& p, const std::string& name) {
+  constexpr std::size_t kMost = 1 << 20;
+  constexpr const char* kSeparators = ", \t\r\n";
+  const std::string text = p.required_string(name);
+  std::vector<double> result;
+  for (std::size_t at = text.find_first_not_of(kSeparators); at != std::string::npos;) {
+    const std::size_t end = std::min(text.find_first_of(kSeparators, at), text.size());
+    double value = 0;
+    const auto [rest, fault] = std::from_chars(text.data() + at, text.data() + end, value);
+    if (fault != std::errc() || rest != text.data() + end)
+      p.fail(name, "expected a number in \"" + name + "\", found \"" +
+                       text.substr(at, std::min<std::size_t>(end - at, 40)) + "\"");
+    if (result.size() == kMost) p.fail(name, "more than " + std::to_string(kMost) + " values");
+    result.push_back(value);
+    at = text.find_first_not_of(kSeparators, end);
+  }
+  return result;
+}
+
+/// From light that is thrown back to light that goes on straight.
+std::shared_ptr<const PhaseFunction> tabphase(Properties& p) {
+  try {
+    return make_tabulated_phase(numbers(p, "values"));
+  } catch (const std::domain_error& error) {
+    p.fail("values", error.what());
+  }
 }
 
 /// `scale` multiplies sigma_t alone. `emission` is ours (Mitsuba 3.9.1 has none): emitted radiance
@@ -40,7 +86,11 @@ std::shared_ptr<const Medium> homogeneous(Properties& p) {
 const MediaRegistry& builtin_media() {
   static const MediaRegistry registry{
       {{"homogeneous", homogeneous}},
-      {{"isotropic", isotropic}, {"hg", hg}},
+      {{"isotropic", isotropic},
+       {"hg", hg},
+       {"rayleigh", rayleigh},
+       {"blendphase", blendphase},
+       {"tabphase", tabphase}},
   };
   return registry;
 }

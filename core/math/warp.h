@@ -24,6 +24,19 @@ inline double invert_azimuth(double x, double y) {
   return clamp_unit(turn < 0 ? turn + 1 : turn);
 }
 
+/// The polar angle of a direction as 1 − cosθ and 1 + cosθ: neither pole loses digits.
+struct PolarAngle {
+  double one_minus_cos, one_plus_cos;
+
+  double cosine() const { return one_minus_cos < 1 ? 1 - one_minus_cos : one_plus_cos - 1; }
+};
+
+inline Vec3 polar_direction(const PolarAngle& angle, double azimuth) {
+  const double sin_theta = std::sqrt(angle.one_minus_cos * angle.one_plus_cos);
+  const double phi = 2 * kPi * azimuth;
+  return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), angle.cosine()};
+}
+
 /// Unit vector with 1 − cosθ = d: exact at the pole, where 1 − (1 − d)² is not.
 inline Vec3 spherical_direction(double d, double azimuth) {
   const double sin_theta = std::sqrt(std::max(d * (2 - d), 0.0));
@@ -139,15 +152,14 @@ inline double pdf_henyey_greenstein(double g, double one_minus_cos, double one_p
   return 0.25 * kInvPi * (1 - g) * (1 + g) / (base * std::sqrt(base));
 }
 
-/// Around +z, the direction of propagation. The distribution function of 1 − cosθ solved without
-/// division by g.
+/// The distribution function of 1 − cosθ solved without division by g.
+inline PolarAngle sample_henyey_greenstein_angle(double u, double g) {
+  const double scale = 2 / sqr((1 - u) * (1 + g) + u * (1 - g));
+  return {sqr(1 - g) * u * (1 + g * (1 - u)) * scale, sqr(1 + g) * (1 - u) * (1 - g * u) * scale};
+}
+/// Around +z, the direction of propagation.
 inline Vec3 sample_henyey_greenstein(const Vec2& u, double g) {
-  const double scale = 2 / sqr((1 - u.x) * (1 + g) + u.x * (1 - g));
-  const double d = sqr(1 - g) * u.x * (1 + g * (1 - u.x)) * scale;
-  const double one_plus = sqr(1 + g) * (1 - u.x) * (1 - g * u.x) * scale;
-  const double sin_theta = std::sqrt(d * one_plus);
-  const double phi = 2 * kPi * u.y;
-  return {sin_theta * std::cos(phi), sin_theta * std::sin(phi), d < 1 ? 1 - d : one_plus - 1};
+  return polar_direction(sample_henyey_greenstein_angle(u.x, g), u.y);
 }
 
 /// u.x from 1 − cosθ and 1 + cosθ.

@@ -119,7 +119,7 @@ std::optional<DirectionSample> sample_direction(const Scene& scene, const Vertex
                                                 double v, bool behind_specular) {
   DirectionSample s{Vec3(0), false, {}};
   if (x.in_medium()) {
-    s.w = x.medium->phase().sample(from, Vec2(u.y, u.z));
+    s.w = x.medium->phase().sample(from, u);
   } else {
     const auto local = bsdf(scene, x).sample(x.point, x.point.shading.to_local(from), u);
     if (!local) return std::nullopt;

@@ -1,5 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <optional>
+
 #include "core/math/vec.h"
 
 namespace fogbow {
@@ -9,13 +11,16 @@ namespace fogbow {
 class PhaseFunction {
  public:
   virtual ~PhaseFunction() = default;
-  /// 1/sr; integrates to one over the sphere.
+  /// 1/sr; each channel integrates to one over the sphere.
   virtual RGB f_p(const Vec3& from, const Vec3& to) const = 0;
   virtual double pdf_sigma(const Vec3& from, const Vec3& to) const = 0;
-  virtual Vec3 sample(const Vec3& from, const Vec2& u) const = 0;
-  /// The u with sample(from, u) = to.
-  virtual Vec2 invert(const Vec3& from, const Vec3& to) const = 0;
-  /// Mean cosine of the scattering angle.
+  /// u.x chooses the lobe, u.y and u.z the direction.
+  virtual Vec3 sample(const Vec3& from, const Vec3& u) const = 0;
+  /// Some u with sample(from, u) = to, drawn by the uniform auxiliaries from its exact conditional
+  /// law given (from, to); nothing where the density is zero.
+  virtual std::optional<Vec3> invert(const Vec3& from, const Vec3& to,
+                                     const Vec3& auxiliary) const = 0;
+  /// Mean cosine of the scattering angle, averaged over the channels.
   virtual double mean_cosine() const = 0;
 };
 

@@ -106,6 +106,62 @@ TEST(HomogeneousMedium, DefaultsAndProperties) {
   EXPECT_EQ(load_medium(folder, R"(<phase type="isotropic"/>)")->phase().mean_cosine(), 0);
 }
 
+TEST(Phase, Plugins) {
+  SceneFolder folder;
+  const auto value = [&](const std::string& phase, double cosine) {
+    const auto medium = load_medium(folder, phase);
+    return medium->phase().f_p({0, 0, 1}, {std::sqrt(1 - cosine * cosine), 0, -cosine}).x;
+  };
+  const double sphere = 4 * kPi;
+  EXPECT_NEAR(value(R"(<phase type="rayleigh"/>)", 0.6) * sphere, 0.75 * 1.36, 1e-14);
+  const std::string table = R"(<phase type="tabphase"><string name="values" value=" 1, 2
+      6,"/></phase>)";
+  EXPECT_NEAR(value(table, 0.5) * sphere, 4 / 2.75, 1e-14);
+  EXPECT_NEAR(value(table, -1) * sphere, 1 / 2.75, 1e-14);
+  // The first in the file weighs 1 − weight.
+  const auto blend = [](const std::string& phases) {
+    return R"(<phase type="blendphase"><float name="weight" value="0.25"/>)" + phases + "</phase>";
+  };
+  EXPECT_NEAR(value(blend(table + R"(<phase type="isotropic"/>)"), -1) * sphere, 0.75 / 2.75 + 0.25,
+              1e-14);
+  EXPECT_NEAR(
+      value(blend(blend(table + table) + R"(<phase name="a" type="rayleigh"/>)"), -1) * sphere,
+      0.75 / 2.75 + 0.25 * 1.5, 1e-14);
+  EXPECT_TRUE(folder.warnings.empty());
+}
+
+TEST(Phase, RefusesWhatItCannotMean) {
+  SceneFolder folder;
+  const auto expect_error = [&](const std::string& phase, const std::string& message) {
+    const std::string error = folder.error(phase);
+    EXPECT_NE(error.find(message), std::string::npos) << error;
+  };
+  const auto table = [](const std::string& values) {
+    return "<phase type=\"tabphase\"><string name=\"values\" value=\"" + values + "\"/></phase>";
+  };
+  expect_error(R"(<phase type="tabphase"/>)",
+               "2:1: phase \"tabphase\" needs the string \"values\"");
+  expect_error(table("1"), "2:24: a phase function needs at least two values");
+  expect_error(table(""), "2:24: a phase function needs at least two values");
+  expect_error(table("0, 0"), "2:24: the values of a phase function must not all be zero");
+  expect_error(table("1, -1"), "2:24: the values of a phase function must be finite and not neg");
+  expect_error(table("1, nan"), "2:24: the values of a phase function must be finite");
+  expect_error(table("1, 2x"), "2:24: expected a number in \"values\", found \"2x\"");
+  expect_error(table("1e308 1e308 1e308"), "2:24: the values of a phase function");
+  const auto blend = [](const std::string& content) {
+    return "<phase type=\"blendphase\">" + content + "</phase>";
+  };
+  const std::string hg = R"(<phase type="hg"/>)";
+  expect_error(blend(hg + hg), "2:1: phase \"blendphase\" needs the float \"weight\"");
+  const std::string weight = R"(<float name="weight" value="0.5"/>)";
+  expect_error(blend(weight + hg), "2:1: phase \"blendphase\" needs two nested phase functions");
+  expect_error(blend(weight + hg + hg + hg), "functions, found 3");
+  expect_error(blend(R"(<float name="weight" value="1.5"/>)" + hg + hg),
+               "2:26: \"weight\" must lie between 0 and 1");
+  expect_error(blend(R"(<string name="weight" value="a"/>)" + hg + hg),
+               "2:26: \"weight\" must be of type float");
+}
+
 TEST(HomogeneousMedium, RefusesWhatItCannotMean) {
   SceneFolder folder;
   const auto error = [&](const std::string& properties) {
