@@ -13,6 +13,8 @@ std::shared_ptr<const PhaseFunction> make_isotropic_phase();
 /// Henyey and Greenstein 1941; g in (−1, 1).
 std::shared_ptr<const PhaseFunction> make_henyey_greenstein(double g);
 std::shared_ptr<const PhaseFunction> make_rayleigh_phase();
+/// Draine 2003; g in (−1, 1), alpha ≥ 0.
+std::shared_ptr<const PhaseFunction> make_draine(double g, double alpha);
 /// (1 − weight) · first + weight · second; weight in [0, 1].
 std::shared_ptr<const PhaseFunction> make_blend_phase(std::shared_ptr<const PhaseFunction> first,
                                                       std::shared_ptr<const PhaseFunction> second,

@@ -21,6 +21,14 @@ std::shared_ptr<const PhaseFunction> hg(Properties& p) {
 
 std::shared_ptr<const PhaseFunction> rayleigh(Properties&) { return make_rayleigh_phase(); }
 
+/// Ours; Mitsuba has none.
+std::shared_ptr<const PhaseFunction> draine(Properties& p) {
+  const double g = p.number("g", 0.8), alpha = p.number("alpha", 1);
+  if (!(g > -1 && g < 1)) p.fail("g", "\"g\" must lie strictly between -1 and 1");
+  if (!(alpha >= 0)) p.fail("alpha", "\"alpha\" must not be negative");
+  return make_draine(g, alpha);
+}
+
 std::shared_ptr<const PhaseFunction> blendphase(Properties& p) {
   const double weight = p.required_number("weight");
   if (!(weight >= 0 && weight <= 1)) p.fail("weight", "\"weight\" must lie between 0 and 1");
@@ -89,6 +97,7 @@ const MediaRegistry& builtin_media() {
       {{"isotropic", isotropic},
        {"hg", hg},
        {"rayleigh", rayleigh},
+       {"draine", draine},
        {"blendphase", blendphase},
        {"tabphase", tabphase}},
   };

@@ -38,6 +38,36 @@ TEST(PhaseFunction, RayleighTriple) {
               "");
 }
 
+TEST(PhaseFunction, DraineTriples) {
+  const Vec2 cases[] = {{0, 1},    {1e-9, 0.5}, {0.001, 300}, {0.6, 0},   {0.8, 1},
+                        {0.8, 40}, {0.99, 5},   {-0.7, 1},    {-0.95, 30}};  // g, α
+  const Vec3 from = kFroms[2];
+  for (const Vec2& c : cases) {
+    const Frame peak(c.x < 0 ? from : -from);
+    EXPECT_EQ(testing::check_triple("Draine " + std::to_string(c.x) + " " + std::to_string(c.y),
+                                    phase_triple(make_draine(c.x, c.y), from),
+                                    testing::lobe_chart(peak, std::pow(1 - std::fabs(c.x), 1.5))),
+              "");
+  }
+}
+
+/// The laws that it holds as special cases, and the formula itself.
+TEST(PhaseFunction, DraineValues) {
+  const auto plain = make_draine(0.7, 0), hg = make_henyey_greenstein(0.7);
+  const auto gas = make_draine(0, 1), rayleigh = make_rayleigh_phase();
+  for (const Vec3& a : kFroms)
+    for (const Vec3& b : kFroms) {
+      EXPECT_DOUBLE_EQ(plain->pdf_sigma(a, b), hg->pdf_sigma(a, b));
+      EXPECT_DOUBLE_EQ(gas->pdf_sigma(a, b), rayleigh->pdf_sigma(a, b));
+    }
+  const double mu = 0.3, g = -0.4, alpha = 2.5;
+  const Vec3 to(std::sqrt(1 - mu * mu), 0, -mu);
+  EXPECT_NEAR(make_draine(g, alpha)->f_p({0, 0, 1}, to).z,
+              (1 - g * g) * (1 + alpha * mu * mu) / (1 + alpha * (1 + 2 * g * g) / 3) /
+                  (4 * kPi * std::pow(1 + g * g - 2 * g * mu, 1.5)),
+              1e-14);
+}
+
 TEST(PhaseFunction, BlendTriples) {
   const auto forward = make_henyey_greenstein(0.8), backward = make_henyey_greenstein(-0.5);
   const auto partly_black = make_tabulated_phase({1, 0, 0, 3});
@@ -115,6 +145,11 @@ TEST(PhaseFunction, Moments) {
   for (const double g : {-0.9, -0.3, 1e-10, 0.4, 0.8, 0.95})
     expect_moments(*make_henyey_greenstein(g), g > 0 ? 1 - g : 0.9, g, g * g);
   expect_moments(*make_rayleigh_phase(), 0.5, 0, 0.1);
+  // Draine: μ³ = (2P₃ + 3P₁)/5 and μ⁴ = (8P₄ + 20P₂ + 7)/35, and P_l has the mean g^l in HG.
+  const double g = 0.6, a = 3, norm = 1 + a * (1 + 2 * g * g) / 3;
+  const double fourth = (8 * std::pow(g, 4) + 20 * g * g + 7) / 35, square = (2 * g * g + 1) / 3;
+  expect_moments(*make_draine(g, a), 0.4, (g + a * (2 * g * g * g + 3 * g) / 5) / norm,
+                 (g * g + a * (1.5 * fourth - 0.5 * square)) / norm);
   // ∫μ(1 + μ)/2 dμ = 1/3 and ∫P₂(1 + μ)/2 dμ = 0; |μ| has ∫P₂|μ| dμ = 1/4.
   expect_moments(*make_tabulated_phase({0, 1}), 0.5, 1.0 / 3, 0);
   expect_moments(*make_tabulated_phase({1, 0, 1}), 1, 0, 0.25);
@@ -137,8 +172,12 @@ TEST(PhaseFunction, Reciprocity) {
 }
 
 TEST(PhaseFunction, RefusesWhatItCannotMean) {
-  for (const double g : {1.0, -1.0, 2.0, std::nan("")})
+  for (const double g : {1.0, -1.0, 2.0, std::nan("")}) {
     EXPECT_THROW(make_henyey_greenstein(g), std::domain_error);
+    EXPECT_THROW(make_draine(g, 1), std::domain_error);
+  }
+  for (const double alpha : {-0.1, kInfinity, std::nan("")})
+    EXPECT_THROW(make_draine(0.5, alpha), std::domain_error);
   for (const double weight : {-0.1, 1.1, std::nan("")})
     EXPECT_THROW(make_blend_phase(make_isotropic_phase(), make_isotropic_phase(), weight),
                  std::domain_error);

@@ -113,6 +113,10 @@ TEST(Phase, Plugins) {
     return medium->phase().f_p({0, 0, 1}, {std::sqrt(1 - cosine * cosine), 0, -cosine}).x;
   };
   const double sphere = 4 * kPi;
+  const std::string draine = R"(<phase type="draine"><float name="g" value="0"/>)";
+  EXPECT_NEAR(value(draine + "</phase>", 0.6) * sphere, 0.75 * 1.36, 1e-14);
+  EXPECT_NEAR(value(draine + R"(<float name="alpha" value="6"/></phase>)", 0.5) * sphere, 2.5 / 3,
+              1e-14);
   EXPECT_NEAR(value(R"(<phase type="rayleigh"/>)", 0.6) * sphere, 0.75 * 1.36, 1e-14);
   const std::string table = R"(<phase type="tabphase"><string name="values" value=" 1, 2
       6,"/></phase>)";
@@ -148,6 +152,10 @@ TEST(Phase, RefusesWhatItCannotMean) {
   expect_error(table("1, nan"), "2:24: the values of a phase function must be finite");
   expect_error(table("1, 2x"), "2:24: expected a number in \"values\", found \"2x\"");
   expect_error(table("1e308 1e308 1e308"), "2:24: the values of a phase function");
+  expect_error(R"(<phase type="draine"><float name="g" value="1"/></phase>)",
+               "2:22: \"g\" must lie strictly between -1 and 1");
+  expect_error(R"(<phase type="draine"><float name="alpha" value="-1"/></phase>)",
+               "2:22: \"alpha\" must not be negative");
   const auto blend = [](const std::string& content) {
     return "<phase type=\"blendphase\">" + content + "</phase>";
   };
