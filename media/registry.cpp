@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "media/media.h"
+#include "media/mie.h"
 
 namespace fogbow {
 
@@ -69,6 +70,29 @@ std::shared_ptr<const PhaseFunction> tabphase(Properties& p) {
   }
 }
 
+/// Water unless `index` says otherwise.
+DropletSettings droplets(Properties& p) {
+  DropletSettings s;
+  s.radius = p.positive_number("radius", s.radius);
+  s.spread = p.number("spread", s.spread);
+  if (!(s.spread >= 0 && s.spread <= 1)) p.fail("spread", "\"spread\" must lie between 0 and 1");
+  s.wavelengths = p.color("wavelengths", s.wavelengths);
+  const RGB k = p.color("k", RGB(0));
+  const bool water = !p.has("index");
+  const RGB index = p.color("index", RGB(1));
+  for (int c = 0; c < 3; ++c) {
+    if (!(s.wavelengths[c] >= kWaterShortest && s.wavelengths[c] <= kWaterLongest))
+      p.fail("wavelengths", "\"wavelengths\" must lie between 182 and 1129 nm");
+    if (!(index[c] > 0)) p.fail("index", "\"index\" must be greater than zero");
+    s.index[c] = {water ? water_index(s.wavelengths[c]) : index[c], k[c]};
+  }
+  return s;
+}
+
+std::shared_ptr<const PhaseFunction> mie(Properties& p) {
+  return make_table_phase(Droplets(droplets(p)).table());
+}
+
 /// `scale` multiplies sigma_t alone. `emission` is ours (Mitsuba 3.9.1 has none): emitted radiance
 /// per unit length, not scaled.
 std::shared_ptr<const Medium> homogeneous(Properties& p) {
@@ -99,7 +123,8 @@ const MediaRegistry& builtin_media() {
        {"rayleigh", rayleigh},
        {"draine", draine},
        {"blendphase", blendphase},
-       {"tabphase", tabphase}},
+       {"tabphase", tabphase},
+       {"mie", mie}},
   };
   return registry;
 }

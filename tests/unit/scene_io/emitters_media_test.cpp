@@ -122,6 +122,22 @@ TEST(Phase, Plugins) {
       6,"/></phase>)";
   EXPECT_NEAR(value(table, 0.5) * sphere, 4 / 2.75, 1e-14);
   EXPECT_NEAR(value(table, -1) * sphere, 1 / 2.75, 1e-14);
+  // Droplets far smaller than the wavelength.
+  const auto mie = [](const std::string& properties) {
+    return R"(<phase type="mie"><float name="radius" value="0.001"/>)"
+           R"(<float name="spread" value="0"/>)" +
+           properties + "</phase>";
+  };
+  EXPECT_NEAR(value(mie(""), 0.6) * sphere, 0.75 * 1.36, 1e-3);
+  EXPECT_NEAR(value(mie(R"(<rgb name="wavelengths" value="650 550 450"/>
+      <float name="index" value="1.5"/><rgb name="k" value="0, 0.1, 0"/>)"),
+                    0.6) *
+                  sphere,
+              0.75 * 1.36, 1e-3);
+  EXPECT_NEAR(load_medium(folder, R"(<phase type="mie"><float name="radius" value="1"/></phase>)")
+                  ->phase()
+                  .mean_cosine(),
+              0.76, 0.03);
   // The first in the file weighs 1 − weight.
   const auto blend = [](const std::string& phases) {
     return R"(<phase type="blendphase"><float name="weight" value="0.25"/>)" + phases + "</phase>";
@@ -156,6 +172,17 @@ TEST(Phase, RefusesWhatItCannotMean) {
                "2:22: \"g\" must lie strictly between -1 and 1");
   expect_error(R"(<phase type="draine"><float name="alpha" value="-1"/></phase>)",
                "2:22: \"alpha\" must not be negative");
+  const auto mie = [](const std::string& tag, const std::string& name, const std::string& value) {
+    return "<phase type=\"mie\"><" + tag + " name=\"" + name + "\" value=\"" + value +
+           "\"/></phase>";
+  };
+  expect_error(mie("float", "radius", "0"), "2:19: \"radius\" must be greater than zero");
+  expect_error(mie("float", "radius", "1e9"), "2:1: droplets of such a radius and spread are too");
+  expect_error(mie("float", "spread", "2"), "2:19: \"spread\" must lie between 0 and 1");
+  expect_error(mie("rgb", "wavelengths", "600, 500, 40"), "2:19: \"wavelengths\" must lie between");
+  expect_error(mie("rgb", "index", "1.3, 1.3, 0"), "2:19: \"index\" must be greater than zero");
+  expect_error(mie("float", "index", "1e9"), "2:1: no scattering can be computed");
+  expect_error(mie("float", "k", "-1"), "2:19: \"k\" must not be negative");
   const auto blend = [](const std::string& content) {
     return "<phase type=\"blendphase\">" + content + "</phase>";
   };
