@@ -7,6 +7,7 @@
 
 #include "media/media.h"
 #include "media/mie.h"
+#include "media/phase_fit.h"
 
 namespace fogbow {
 
@@ -90,7 +91,9 @@ DropletSettings droplets(Properties& p) {
 }
 
 std::shared_ptr<const PhaseFunction> mie(Properties& p) {
-  return make_table_phase(Droplets(droplets(p)).table());
+  const bool compact = p.boolean("compact", false);
+  auto table = make_table_phase(Droplets(droplets(p)).table());
+  return compact ? make_fitted_phase(fit_phase(*table)) : table;
 }
 
 /// `scale` multiplies sigma_t alone. `emission` is ours (Mitsuba 3.9.1 has none): emitted radiance

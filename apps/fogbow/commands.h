@@ -76,11 +76,20 @@ struct CompareArguments {
   std::string json;                         ///< empty: none
 };
 
+struct FitPhaseArguments {
+  std::optional<double> radius, spread;              ///< of droplets: µm, deviation of ln radius
+  std::optional<std::array<double, 3>> wavelengths;  ///< nm
+  std::optional<double> index, k;                    ///< complex index of refraction; none: water's
+  std::string table;                                 ///< file of angles and values to fit instead
+  bool xml = false;  ///< print nothing but the phase functions for a scene
+};
+
 // Each throws Error on failure, and std::bad_alloc.
 ExitCode run_render(const RenderArguments& arguments);
 ExitCode run_info(const InfoArguments& arguments);
 ExitCode run_check(const SceneArguments& arguments);
 ExitCode run_explain(const ExplainArguments& arguments);
 ExitCode run_compare(const CompareArguments& arguments);
+ExitCode run_fit_phase(const FitPhaseArguments& arguments);
 
 }  // namespace fogbow::cli

@@ -155,6 +155,32 @@ void add_explain(CLI::App& program, ExplainArguments& arguments, std::function<E
   app.callback([&] { run = [&] { return run_explain(arguments); }; });
 }
 
+void add_fit_phase(CLI::App& program, FitPhaseArguments& arguments,
+                   std::function<ExitCode()>& run) {
+  CLI::App& app = *program.add_subcommand(
+      "fit-phase", "Fit droplets' scattering, or a table, by Henyey-Greenstein and Draine");
+  const auto number = [&app](const std::string& flag, const std::string& type,
+                             const std::string& help, std::optional<double>& value) {
+    return add_parsed(app, flag, type, help,
+                      [&value](const std::string& text) { value = parse_number(text, false); });
+  };
+  auto* table = app.add_option("--table", arguments.table,
+                               "File to fit instead: lines of an angle in degrees and a value")
+                    ->type_name("FILE");
+  number("--radius", "UM", "Median radius in micrometres (default 10)", arguments.radius)
+      ->excludes(table);
+  number("--spread", "S", "Standard deviation of ln radius (default 0.2)", arguments.spread)
+      ->excludes(table);
+  number("--index", "N", "Index of refraction (default: water's)", arguments.index)
+      ->excludes(table);
+  number("--k", "K", "Its imaginary part (default 0)", arguments.k)->excludes(table);
+  add_parsed(app, "--wavelengths", "R,G,B", "In nanometres (default 611,549,464)",
+             [&arguments](const std::string& text) { arguments.wavelengths = parse_triple(text); })
+      ->excludes(table);
+  app.add_flag("--xml", arguments.xml, "Print nothing but the phase function for a scene");
+  app.callback([&] { run = [&] { return run_fit_phase(arguments); }; });
+}
+
 int fail(ErrorKind kind, const std::string& message) {
   std::fflush(stdout);
   print_message(LogLevel::Error, message);
@@ -174,6 +200,7 @@ int run_program(int argc, char** argv) {
   SceneArguments check;
   ExplainArguments explain;
   CompareArguments compare;
+  FitPhaseArguments fit_phase;
   render.command.assign(argv, argv + argc);
   add_render(app, render, run);
   CLI::App& info_app =
@@ -186,6 +213,7 @@ int run_program(int argc, char** argv) {
   check_app.callback([&] { run = [&] { return run_check(check); }; });
   add_explain(app, explain, run);
   add_compare(app, compare, run);
+  add_fit_phase(app, fit_phase, run);
 
   try {
     app.parse(argc, argv);

@@ -111,6 +111,14 @@ std::array<int, 4> parse_rectangle(const std::string& text) {
   return *values;
 }
 
+std::array<double, 3> parse_triple(const std::string& text) {
+  const auto values = numbers<double, 3>(text, ',');
+  if (values && std::isfinite((*values)[0] + (*values)[1] + (*values)[2])) return *values;
+  const auto value = number<double>(text);
+  if (!value || !std::isfinite(*value)) refuse(text, "one number, or three between commas");
+  return {*value, *value, *value};
+}
+
 std::array<std::uint64_t, 3> parse_replay(const std::string& text) {
   const auto values = numbers<std::uint64_t, 3>(text, ':');
   if (!values) refuse(text, "three whole numbers seed:chain:step, such as 1:0:4711");

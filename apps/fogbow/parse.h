@@ -19,6 +19,8 @@ std::uint64_t parse_seed(const std::string& text);
 std::pair<int, int> parse_size(const std::string& text);
 /// "x,y,width,height" in pixels.
 std::array<int, 4> parse_rectangle(const std::string& text);
+/// "r,g,b", finite; or one number for all three.
+std::array<double, 3> parse_triple(const std::string& text);
 /// "seed:chain:step".
 std::array<std::uint64_t, 3> parse_replay(const std::string& text);
 /// "name=value"; the value may be empty and may hold further '='.

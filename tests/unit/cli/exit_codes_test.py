@@ -50,7 +50,8 @@ class Usage(CliTest):
         self.expect(2, "compare", "a.exr", "b.exr", "--tile", "0", message="--tile")
 
     def test_help_and_version_are_no_failures(self):
-        for arguments in (["--help"], ["render", "--help"], ["info", "--help"], ["check", "-h"], ["compare", "-h"]):
+        for arguments in (["--help"], ["render", "--help"], ["info", "--help"], ["check", "-h"], ["compare", "-h"],
+                          ["fit-phase", "-h"]):
             self.assertIn(b"Usage:", self.expect(0, *arguments).stdout)
         self.assertRegex(self.expect(0, "--version").stdout.decode(), r"^fogbow \d+\.\d+\.\d+\n$")
 

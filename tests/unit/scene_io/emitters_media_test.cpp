@@ -134,6 +134,13 @@ TEST(Phase, Plugins) {
                     0.6) *
                   sphere,
               0.75 * 1.36, 1e-3);
+  // The compact form is not exact, and the same in all channels.
+  const std::string compact =
+      R"(<phase type="mie"><float name="radius" value="1"/><boolean name="compact" value="true"/>)";
+  const auto fit = load_medium(folder, compact + "</phase>");
+  EXPECT_NEAR(fit->phase().mean_cosine(), 0.76, 0.1);
+  const RGB ahead = fit->phase().f_p({0, 0, 1}, {0, 0, -1});
+  EXPECT_TRUE(ahead.x == ahead.y && ahead.y == ahead.z) << ahead.x;
   EXPECT_NEAR(load_medium(folder, R"(<phase type="mie"><float name="radius" value="1"/></phase>)")
                   ->phase()
                   .mean_cosine(),
