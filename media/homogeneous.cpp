@@ -28,13 +28,16 @@ class Homogeneous final : public Medium {
     return {depth_at_infinity(sigma_t_.x), depth_at_infinity(sigma_t_.y),
             depth_at_infinity(sigma_t_.z)};
   }
-  std::optional<double> distance(const Ray&, double t0, double t1, int channel,
-                                 double target) const override {
+  FlightEnd fly(const Ray& ray, double t0, double t1, int channel, double target) const override {
     const double sigma = sigma_t_[channel];
-    if (!(sigma > 0)) return std::nullopt;
-    const double t = t0 + target / sigma;
-    if (!(t < t1)) return std::nullopt;
-    return t;
+    const double t = sigma > 0 ? t0 + target / sigma : kInfinity;
+    const bool inside = t < t1;
+    const double end = inside ? t : t1;
+    return {end, inside, optical_depth(ray, t0, end)};
+  }
+  RGB max_emission(const Bounds&) const override { return emission_; }
+  Majorant majorant(const Ray&, double, double t1) const override {
+    return {t1, max_component(sigma_t_)};
   }
 
  private:

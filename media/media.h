@@ -6,6 +6,7 @@
 
 #include "core/scene/medium.h"
 #include "core/scene/phase_function.h"
+#include "core/scene/volume.h"
 
 namespace fogbow {
 
@@ -28,5 +29,18 @@ std::shared_ptr<const Medium> make_homogeneous_medium(const RGB& sigma_t, const 
                                                       std::shared_ptr<const PhaseFunction> phase,
                                                       const RGB& emission = RGB(0),
                                                       std::string id = {});
+
+struct HeterogeneousSettings {
+  std::shared_ptr<const Volume> sigma_t;  ///< zero outside of its bounds
+  double scale = 1;                       ///< of sigma_t
+  std::shared_ptr<const Volume> albedo;
+  std::shared_ptr<const Volume> emission;  ///< null: none; counts only where σ_t > 0
+};
+
+/// Optical depths and free flights are exact, by regular tracking. Throws std::domain_error on an
+/// albedo above one and on coefficients that are not finite.
+std::shared_ptr<const Medium> make_heterogeneous_medium(const HeterogeneousSettings& settings,
+                                                        std::shared_ptr<const PhaseFunction> phase,
+                                                        std::string id = {});
 
 }  // namespace fogbow

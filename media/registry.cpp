@@ -116,11 +116,49 @@ std::shared_ptr<const Medium> homogeneous(Properties& p) {
   return make_homogeneous_medium(sigma_t, albedo, std::move(phase), emission, p.id());
 }
 
+/// A nested volume, or a colour that is the same everywhere.
+std::shared_ptr<const Volume> volume(Properties& p, const std::string& name, const RGB& fallback,
+                                     double max = kInfinity) {
+  if (!p.has(name))
+    if (auto nested = p.take<Volume>(name)) return nested;
+  return std::make_shared<Volume>(p.color(name, fallback, max));
+}
+
+/// Where emission cannot be seen because nothing else tells where flights end.
+void warn_of_lost_emission(Properties& p, const HeterogeneousSettings& s) {
+  if (is_black(s.scale * s.sigma_t->max()))
+    p.warn("emission", "the emission has no effect: sigma_t is zero everywhere");
+}
+
+/// As in Mitsuba 3.9.1, but for `emission`, which is ours: a volume or colour, not scaled.
+/// `density` is what Mitsuba 0.6 calls sigma_t.
+std::shared_ptr<const Medium> heterogeneous(Properties& p) {
+  const double scale = p.number("scale", 1);
+  if (!(scale >= 0)) p.fail("scale", "\"scale\" must not be negative");
+  HeterogeneousSettings s;
+  s.scale = scale;
+  s.sigma_t = p.take<Volume>("density");
+  if (!s.sigma_t) s.sigma_t = volume(p, "sigma_t", RGB(1));
+  s.albedo = volume(p, "albedo", RGB(0.75), 1);
+  if (p.has("emission") || std::ranges::any_of(p.objects(), [](const NestedObject& o) {
+        return o.name == "emission";
+      })) {
+    s.emission = volume(p, "emission", RGB(0));
+    warn_of_lost_emission(p, s);
+  }
+  // How Mitsuba samples; it changes no picture.
+  p.boolean("sample_emitters", true);
+  p.boolean("has_spectral_extinction", true);
+  auto phase = p.take_one<PhaseFunction>();
+  if (!phase) phase = make_isotropic_phase();
+  return make_heterogeneous_medium(s, std::move(phase), p.id());
+}
+
 }  // namespace
 
 const MediaRegistry& builtin_media() {
   static const MediaRegistry registry{
-      {{"homogeneous", homogeneous}},
+      {{"homogeneous", homogeneous}, {"heterogeneous", heterogeneous}},
       {{"isotropic", isotropic},
        {"hg", hg},
        {"rayleigh", rayleigh},

@@ -109,6 +109,8 @@ std::map<std::string, std::size_t> render_memory(const Scene& scene, const Rende
   const RenderSettings settings = read_render_settings(scene, options);
   std::map<std::string, std::size_t> parts;
   parts["acceleration"] = scene.accel().memory_bytes();
+  for (const auto& medium : scene.media())
+    if (const std::size_t bytes = medium->memory_bytes()) parts["volumes"] += bytes;
   parts["film"] = Film::memory_bytes(scene.film());
   const auto depth = static_cast<std::size_t>(settings.max_depth);
   const std::size_t workspace = 2 * depth * sizeof(SubpathVertex);

@@ -45,6 +45,9 @@ class Estimator {
 struct EstimatorSettings {
   int max_depth = 64;  ///< longest path, in edges: k ≤ max_depth + 1
   int rr_depth = 5;    ///< path: edges before roulette on the throughput starts
+  /// path: transmittances and flights by null collisions instead of exactly, and each light by one
+  /// technique alone, for exact densities are not known then: the oracle of the rest.
+  bool null_collisions = false;
   /// bdpt: with the light that make_seen_light() samples.
   bool seen_light = true;
 };

@@ -3,6 +3,7 @@
 
 #include "core/estimators/estimator.h"
 #include "core/math/warp.h"
+#include "media/null_collision.h"
 
 namespace fogbow {
 
@@ -30,7 +31,10 @@ struct Arrival {
 class PathTracer final : public Estimator {
  public:
   PathTracer(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene), max_vertices_(settings.max_depth + 1), rr_depth_(settings.rr_depth) {}
+      : scene_(scene),
+        max_vertices_(settings.max_depth + 1),
+        rr_depth_(settings.rr_depth),
+        null_collisions_(settings.null_collisions) {}
 
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override;
   const char* name() const override { return "path"; }
@@ -38,6 +42,7 @@ class PathTracer final : public Estimator {
  private:
   bool leave_sensor(SampleStream& eye, Vec2& raster, Flight& flight) const;
   bool arrive(const Flight& flight, SampleStream& eye, Arrival& arrival) const;
+  bool arrive_by_null_collisions(const Flight& flight, SampleStream& eye, Arrival& arrival) const;
   bool scatter_on(const Arrival& at, SampleStream& eye, Flight& flight) const;
 
   /// Light that the flight from `previous` has run into.
@@ -49,9 +54,13 @@ class PathTracer final : public Estimator {
   RGB direct_equiangular(const Flight& flight, SampleStream& light) const;
   /// f/p of one light point seen from y, and the density of running into it instead.
   std::optional<std::pair<RGB, double>> see(const SubpathVertex& light, const Vertex& y,
-                                            const Vec3& w_eye) const;
+                                            const Vec3& w_eye, SampleStream& u) const;
+  /// An estimate of the transmittance from a to b, between which nothing stands.
+  RGB ratio_transmittance(const Vertex& a, const Vertex& b, const Edge& a_to_b,
+                          SampleStream& u) const;
   /// False where the flight cannot meet a medium: equiangular distances would be wasted on it.
   bool may_scatter(const Flight& flight) const {
+    if (null_collisions_) return false;
     return is_sampled(medium_toward(scene_, flight.x, flight.w)) ||
            (scene_.has_media() && scene_.has_null_surfaces());
   }
@@ -62,6 +71,7 @@ class PathTracer final : public Estimator {
 
   const Scene& scene_;
   int max_vertices_, rr_depth_;
+  bool null_collisions_;
 };
 
 /// On the whole way through the scene: where the wall is, free flight need not have found out.
@@ -97,7 +107,49 @@ bool PathTracer::leave_sensor(SampleStream& eye, Vec2& raster, Flight& flight) c
   return !is_black(flight.throughput);
 }
 
+bool PathTracer::arrive_by_null_collisions(const Flight& flight, SampleStream& eye,
+                                           Arrival& at) const {
+  const Ray ray{flight.x.position(), flight.w, flight.t_min, flight.t_max};
+  const UniformSource uniform = [&] { return eye.next(); };
+  NullCollisionFlight end{0, false, RGB(1)};
+  at.edge = Edge{flight.w, 0, RGB(1), RGB(1)};
+  at.throughput = flight.throughput;
+  const ExtendResult result = trace_media(
+      scene_, flight.x, ray, at.y, at.edge.length, [&](const Medium* medium, double t0, double t1) {
+        if (!medium || end.inside) return;
+        if (is_sampled(medium))
+          end = delta_tracking(*medium, ray, t0, t1, uniform);
+        else
+          end.weight = ratio_tracking(*medium, ray, t0, t1, uniform);
+        at.throughput *= end.weight;
+      });
+  if (end.inside) {
+    const auto y = medium_vertex_at(scene_, flight.x, flight.w, end.t, flight.t_min, at.edge);
+    if (!y) return false;
+    at.y = *y;
+  } else if (result != ExtendResult::Reached && !make_infinite_vertex(scene_, at.edge, at.y)) {
+    return false;
+  }
+  return is_finite(at.throughput) && !is_black(at.throughput);
+}
+
+RGB PathTracer::ratio_transmittance(const Vertex& a, const Vertex& b, const Edge& a_to_b,
+                                    SampleStream& u) const {
+  const bool backwards = a.infinite();
+  Vertex unused;
+  double length;
+  RGB tau(1);
+  const Ray ray{backwards ? b.position() : a.position(), backwards ? -a_to_b.w : a_to_b.w, 0,
+                a_to_b.length};
+  trace_media(scene_, backwards ? b : a, ray, unused, length,
+              [&](const Medium* medium, double t0, double t1) {
+                if (medium) tau *= ratio_tracking(*medium, ray, t0, t1, [&] { return u.next(); });
+              });
+  return tau;
+}
+
 bool PathTracer::arrive(const Flight& flight, SampleStream& eye, Arrival& at) const {
+  if (null_collisions_) return arrive_by_null_collisions(flight, eye, at);
   const ExtendResult result =
       extend(scene_, flight.x, flight.w, eye.next2(), at.y, at.edge, flight.t_min, flight.t_max);
   if (result != ExtendResult::Reached && !make_infinite_vertex(scene_, at.edge, at.y)) return false;
@@ -141,6 +193,7 @@ RGB PathTracer::emission(const Flight& before_previous, const Arrival& previous,
   if (!hittable(scene_, at.y)) return RGB(0);
   const RGB value = at.throughput * L_e(scene_, at.y, -flight.w);
   if (is_black(value) || flight.x.kind == VertexKind::Sensor || flight.x.degenerate) return value;
+  if (null_collisions_) return RGB(0);  // direct() has it
   const double pdf_hit = pdf_arrival(at.y, at.edge, flight.pdf_sigma);
   const double pdf_light = pdf_emitter_position(scene_, at.y);
   const double pdf_others = pdf_light * (1 + share(before_previous, previous, at.y));
@@ -148,15 +201,16 @@ RGB PathTracer::emission(const Flight& before_previous, const Arrival& previous,
 }
 
 std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light, const Vertex& y,
-                                                      const Vec3& w_eye) const {
+                                                      const Vec3& w_eye, SampleStream& u) const {
   const Vec3 w =
       light.x.infinite() ? light.x.point.n_g : normalize(y.position() - light.x.position());
   const RGB radiance = L_e(scene_, light.x, w);
   if (is_black(radiance)) return std::nullopt;
   const Scattering s = scatter(scene_, y, -w, w_eye, false, false);
   if (is_black(s.f_hat)) return std::nullopt;
-  const auto edge = connect(scene_, light.x, y);
+  auto edge = connect(scene_, light.x, y);
   if (!edge) return std::nullopt;
+  if (null_collisions_) edge->tau = ratio_transmittance(light.x, y, *edge, u);
   const RGB value =
       radiance * geometric_term(scene_, light.x, y, *edge) * edge->tau * s.f_hat / light.pdf;
   double pdf_hit = 0;
@@ -168,8 +222,9 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
 RGB PathTracer::direct(const Flight& flight, const Arrival& at, SampleStream& u) const {
   SubpathVertex light;
   if (!connectible(scene_, at.y) || !sample_emitter(scene_, u, light)) return RGB(0);
-  const auto seen = see(light, at.y, -flight.w);
+  const auto seen = see(light, at.y, -flight.w, u);
   if (!seen) return RGB(0);
+  if (null_collisions_) return at.throughput * seen->first;
   const double pdf_both = light.pdf * (1 + share(flight, at, light.x));
   return at.throughput * seen->first * (light.pdf / (pdf_both + seen->second));
 }
@@ -185,7 +240,7 @@ RGB PathTracer::direct_equiangular(const Flight& flight, SampleStream& u) const 
   Arrival at;
   const auto y = medium_vertex_at(scene_, flight.x, flight.w, t, flight.t_min, at.edge);
   if (!y || !connectible(scene_, *y)) return RGB(0);
-  const auto seen = see(light, *y, -flight.w);
+  const auto seen = see(light, *y, -flight.w, u);
   if (!seen) return RGB(0);
   const double q = law.pdf(t), free_flight = pdf_distance(at.edge, *y);
   const double pdf = q * light.pdf;

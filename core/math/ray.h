@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <algorithm>
 #include <array>
 
 #include "core/math/vec.h"
@@ -44,5 +45,20 @@ struct Bounds {
   double radius() const { return empty() ? 0.0 : 0.5 * length(diagonal()); }
   double volume() const { return empty() ? 0.0 : (hi.x - lo.x) * (hi.y - lo.y) * (hi.z - lo.z); }
 };
+
+/// Cuts [t0, t1] down to the part of the ray within a box; false where there is none.
+inline bool clip(const Bounds& box, const Ray& ray, double& t0, double& t1) {
+  for (int axis = 0; axis < 3; ++axis) {
+    const double o = ray.o[axis], d = ray.d[axis];
+    if (d == 0) {
+      if (!(o >= box.lo[axis] && o <= box.hi[axis])) return false;
+      continue;
+    }
+    const double a = (box.lo[axis] - o) / d, b = (box.hi[axis] - o) / d;
+    t0 = std::max(t0, std::min(a, b));
+    t1 = std::min(t1, std::max(a, b));
+  }
+  return t0 < t1;
+}
 
 }  // namespace fogbow

@@ -57,12 +57,14 @@ RGB transmittance(const RGB& depth) {
   return glm::exp(-depth);
 }
 
-/// Multiplies an edge's transmittance by that of one medium over [t0, t1].
-void attenuate(Edge& edge, const Medium* medium, const Ray& ray, double t0, double t1) {
-  if (!medium) return;
-  const RGB tau = transmittance(medium->optical_depth(ray, t0, t1));
+/// Multiplies an edge's transmittance by that of one medium.
+void attenuate(Edge& edge, const Medium* medium, const RGB& depth) {
+  const RGB tau = transmittance(depth);
   edge.tau *= tau;
   if (is_sampled(medium)) edge.tau_q *= tau;
+}
+void attenuate(Edge& edge, const Medium* medium, const Ray& ray, double t0, double t1) {
+  if (medium) attenuate(edge, medium, medium->optical_depth(ray, t0, t1));
 }
 
 bool passes(const Scene& scene, const Surface& surface, const SurfacePoint& point) {
@@ -170,33 +172,37 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
   FreeFlight flight(u);
   edge = Edge{w, 0, RGB(1), RGB(1)};
   for (;;) {
-    std::optional<double> stop;
-    if (is_sampled(medium))
-      stop = medium->distance(ray, ray.t_min, t_max, flight.channel, flight.remaining);
-    // Only what lies in front of the free flight's end matters.
-    ray.t_max = stop.value_or(t_max);
+    // Only what lies in front of the free flight's end matters; but where flights cost more than
+    // rays, they are to end at the surface.
+    const bool flies = is_sampled(medium), flies_last = flies && medium->is_heterogeneous();
+    FlightEnd end{t_max, false};
+    if (flies && !flies_last)
+      end = medium->fly(ray, ray.t_min, t_max, flight.channel, flight.remaining);
+    ray.t_max = end.t;
     ++ray_count;
     const auto hit = scene.accel().intersect(ray, from);
-    const double t = hit ? hit->t : ray.t_max;
-    attenuate(edge, medium, ray, ray.t_min, t);
-    if (!hit) {
-      edge.length = t;
-      if (!stop) return t_max == kInfinity ? ExtendResult::Escaped : ExtendResult::Lost;
-      make_medium_vertex(scene, ray(t), medium, next);
+    if (hit) end = {hit->t, false};
+    if (flies_last)
+      end = medium->fly(ray, ray.t_min, end.t, flight.channel, flight.remaining);
+    else if (medium && !end.inside)
+      end.depth = medium->optical_depth(ray, ray.t_min, end.t);
+    if (medium) attenuate(edge, medium, end.depth);
+    edge.length = end.t;
+    if (end.inside) {
+      make_medium_vertex(scene, ray(end.t), medium, next);
       return ExtendResult::Reached;
     }
+    if (!hit) return t_max == kInfinity ? ExtendResult::Escaped : ExtendResult::Lost;
     const Surface& surface = scene.surface(hit->id.shape);
     const SurfacePoint point = scene.surface_point(*hit);
     if (!passes(scene, surface, point)) {
-      edge.length = t;
       make_surface_vertex(scene, *hit, point, medium, next);
       return ExtendResult::Reached;
     }
-    if (is_sampled(medium))
-      flight.remaining -= medium->optical_depth(ray, ray.t_min, t)[flight.channel];
-    flight.remaining = std::max(flight.remaining, 0.0);
+    if (flies) flight.remaining = std::max(flight.remaining - end.depth[flight.channel], 0.0);
     medium = behind(surface, point, w, medium);
-    ray.t_min = t;
+    ray.t_min = end.t;
+    ray.t_max = t_max;
     from = hit->id;
   }
 }
@@ -210,18 +216,40 @@ ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& 
   });
 }
 
+ExtendResult trace_media(const Scene& scene, const Vertex& x, const Ray& ray, Vertex& next,
+                         double& length,
+                         const std::function<void(const Medium*, double, double)>& passed) {
+  return follow(scene, x, ray, next, length, passed);
+}
+
 /// More sections than most rays have; where there are more, the buffer grows once.
 constexpr std::size_t kSections = 32;
+
+/// Sections into which the way through a heterogeneous medium is cut: whoever asks for a distance
+/// on it follows the ray through one of them alone.
+constexpr int kCuts = 8;
 
 void RayProfile::trace(const Scene& scene, const Vertex& x, const Vec3& w, double t_min,
                        double t_max) {
   ray_ = Ray{x.position(), w, t_min, t_max};
   sections_.clear();
   sections_.reserve(kSections);
+  answers_.fill({-1, RGB(0)});
   edge_ = Edge{w, 0, RGB(1), RGB(1)};
-  const auto pass = [&](const Medium* medium, double t0, double t1) {
+  const auto add = [&](const Medium* medium, double t0, double t1) {
     sections_.push_back({t0, t1, medium, edge_.tau, edge_.tau_q});
     attenuate(edge_, medium, ray_, t0, t1);
+  };
+  const auto pass = [&](const Medium* medium, double t0, double t1) {
+    double a = t0, b = t1;
+    if (medium && medium->is_heterogeneous() && clip(medium->support(), ray_, a, b))
+      for (int i = 1; i < kCuts; ++i) {
+        const double cut = a + (b - a) * i / kCuts;
+        if (!(cut > t0 && cut < t1)) continue;
+        add(medium, t0, cut);
+        t0 = cut;
+      }
+    add(medium, t0, t1);
   };
   has_wall_ = follow(scene, x, ray_, wall_, edge_.length, pass) == ExtendResult::Reached;
 }
@@ -235,7 +263,16 @@ const RayProfile::Section& RayProfile::section_at(double t) const {
 RGB RayProfile::tau_q(double t) const {
   const Section& s = section_at(t);
   if (!is_sampled(s.medium)) return s.tau_q;
-  return s.tau_q * transmittance(s.medium->optical_depth(ray_, s.begin, std::min(t, s.end)));
+  const auto compute = [&] {
+    return s.tau_q * transmittance(s.medium->optical_depth(ray_, s.begin, std::min(t, s.end)));
+  };
+  if (!s.medium->is_heterogeneous()) return compute();
+  // Laws of the distance ask of the same few places again and again.
+  for (const auto& [at, tau] : answers_)
+    if (at == t) return tau;
+  std::ranges::rotate(answers_, answers_.end() - 1);
+  answers_[0] = {t, compute()};
+  return answers_[0].second;
 }
 
 std::optional<double> RayProfile::distance(int channel, double u) const {

@@ -1,6 +1,9 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <array>
+#include <functional>
 #include <optional>
+#include <utility>
 #include <vector>
 
 #include "core/path/vertex.h"
@@ -30,6 +33,11 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
 /// The same to the first surface, whatever media lie before it. Escaped where there is none.
 ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& w, Vertex& next,
                                Edge& edge, double t_min = 0, double t_max = kInfinity);
+
+/// The same with no medium but those that `passed(medium, t0, t1)` is told of, vacuum as null.
+ExtendResult trace_media(const Scene& scene, const Vertex& x, const Ray& ray, Vertex& next,
+                         double& length,
+                         const std::function<void(const Medium*, double, double)>& passed);
 
 /// The primary samples with which `extend` would have ended on `end`, drawn from their conditional
 /// law by uniform auxiliaries.
@@ -82,6 +90,8 @@ class RayProfile {
   Vertex wall_;
   Edge edge_;
   std::vector<Section> sections_;
+  /// τ_q where it was asked for last in heterogeneous media: (t, τ_q).
+  mutable std::array<std::pair<double, RGB>, 4> answers_;
 };
 
 /// Rays traced by all threads so far.

@@ -17,9 +17,9 @@ std::shared_ptr<Emitter> make_point_emitter(const Vec3& position, const RGB& int
 /// The same radiance from everywhere beyond the scene. invert_direction takes any point of the ray
 /// as its origin.
 std::shared_ptr<Emitter> make_constant_emitter(const RGB& radiance);
-/// Emission of a medium: positions uniform in `bounds`, nothing where `medium_at` says another
-/// medium; directions isotropic. Only points of the medium may be asked about; its pdf_position is
-/// 0 outside `bounds`.
+/// Emission of a medium: positions uniform in `bounds`, or where the medium is heterogeneous as its
+/// emission is bounded; nothing where `medium_at` says another medium; directions isotropic. Only
+/// points of the medium may be asked about; its pdf_position is 0 outside `bounds`.
 std::shared_ptr<Emitter> make_volume_emitter(std::shared_ptr<const Medium> medium,
                                              const Bounds& bounds,
                                              std::function<const Medium*(const Vec3&)> medium_at);

@@ -13,6 +13,7 @@
 #include "core/scene/bsdf.h"
 #include "core/scene/medium.h"
 #include "core/scene/phase_function.h"
+#include "core/scene/volume.h"
 #include "core/util/error.h"
 
 namespace fogbow {
@@ -46,16 +47,17 @@ struct Property {
 
 /// An object inside another one: written there, or referred to.
 struct NestedObject {
-  using Object = std::variant<std::shared_ptr<const Bsdf>, std::shared_ptr<const Medium>,
-                              std::shared_ptr<const PhaseFunction>,
-                              std::shared_ptr<const ReconstructionFilter>>;
+  using Object =
+      std::variant<std::shared_ptr<const Bsdf>, std::shared_ptr<const Medium>,
+                   std::shared_ptr<const PhaseFunction>,
+                   std::shared_ptr<const ReconstructionFilter>, std::shared_ptr<const Volume>>;
   std::string name;
   Object object;
   SourceLocation where;
   bool used = false;
 
   const char* type_name() const {
-    static constexpr const char* kNames[] = {"bsdf", "medium", "phase", "rfilter"};
+    static constexpr const char* kNames[] = {"bsdf", "medium", "phase", "rfilter", "volume"};
     return kNames[object.index()];
   }
 };

@@ -277,7 +277,8 @@ Bounds Scene::emission_bounds(const Medium* medium, const BoundaryReport& report
       bounded &= glm::all(glm::lessThanEqual(inside.lo, b.lo)) &&
                  glm::all(glm::lessThanEqual(b.hi, inside.hi));
     }
-  return bounded ? inside : bounds_;
+  const Bounds outer = bounded ? inside : bounds_, support = medium->support();
+  return {glm::max(outer.lo, support.lo), glm::min(outer.hi, support.hi)};
 }
 
 void Scene::list_media() {
@@ -301,7 +302,7 @@ void Scene::add_volume_emitters(const BoundaryReport& report) {
                   describe(medium.get()) + " emits, but nothing tells where: it needs a boundary");
     const double diagonal = length(bounds.diagonal());
     const Ray across{bounds.lo, bounds.diagonal() / diagonal};
-    if (is_black(medium->optical_depth(across, 0, diagonal)))
+    if (!medium->is_heterogeneous() && is_black(medium->optical_depth(across, 0, diagonal)))
       throw Error(ErrorKind::Scene, describe(medium.get()) + " emits but has no sigma_t");
     emitter_of_medium_.emplace_back(medium.get(), static_cast<int>(emitters_.size()));
     emitters_.push_back(

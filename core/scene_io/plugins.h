@@ -10,6 +10,7 @@
 #include "core/scene/emitter.h"
 #include "core/scene/properties.h"
 #include "core/scene/sensor.h"
+#include "core/scene/volume.h"
 #include "core/scene_io/content_hash.h"
 #include "core/scene_io/files.h"
 
@@ -21,11 +22,13 @@ namespace fogbow {
 template <class Constructor>
 using PluginTable = std::map<std::string, std::function<Constructor>>;
 
-/// What shapes need besides their properties: files, whose bytes go into the hash.
-struct ShapeContext {
+/// What objects made from files need besides their properties; the files' bytes go into the hash.
+struct FileContext {
   const FileResolver& files;
   ContentHash& hash;
 };
+
+using ShapeContext = FileContext;
 
 const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins();
 const PluginTable<std::shared_ptr<const Bsdf>(Properties&)>& bsdf_plugins();
@@ -35,6 +38,7 @@ const PluginTable<std::shared_ptr<Emitter>(Properties&, std::shared_ptr<const Sh
 surface_emitter_plugins();
 const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)>&
 sensor_plugins();
+const PluginTable<std::shared_ptr<const Volume>(Properties&, const FileContext&)>& volume_plugins();
 const PluginTable<FilmSettings(Properties&)>& film_plugins();
 const PluginTable<std::shared_ptr<const ReconstructionFilter>(Properties&)>& filter_plugins();
 

@@ -17,8 +17,9 @@ constexpr std::size_t kMaxProperties = 256;
 constexpr std::size_t kMaxDepth = 64;
 
 const std::vector<std::string>& object_tags() {
-  static const std::vector<std::string> tags{"bsdf",  "emitter", "film",    "integrator", "medium",
-                                             "phase", "rfilter", "sampler", "sensor",     "shape"};
+  static const std::vector<std::string> tags{"bsdf",   "emitter", "film",    "integrator",
+                                             "medium", "phase",   "rfilter", "sampler",
+                                             "sensor", "shape",   "volume"};
   return tags;
 }
 
@@ -27,7 +28,7 @@ bool is_object_tag(const std::string& tag) {
 }
 
 bool is_shared_tag(const std::string& tag) {
-  return tag == "bsdf" || tag == "medium" || tag == "phase" || tag == "rfilter";
+  return tag == "bsdf" || tag == "medium" || tag == "phase" || tag == "rfilter" || tag == "volume";
 }
 
 /// The constructor that a table has for a plugin.
@@ -166,7 +167,7 @@ void SceneBuilder::read_child(Object& object, const XmlNode& child) {
   if (!reference && !is_object_tag(child.tag)) {
     std::vector<std::string> known = value_tags();
     known.insert(known.end(), object_tags().begin(), object_tags().end());
-    const bool later = child.tag == "texture" || child.tag == "volume";
+    const bool later = child.tag == "texture";
     throw Error(ErrorKind::Scene, child.where(),
                 later ? "<" + child.tag + "> is not supported yet"
                       : "unknown element <" + child.tag + ">" + suggestion(child.tag, known));
@@ -188,7 +189,7 @@ const SceneBuilder::Shared& SceneBuilder::shared(const XmlNode& node) {
   const Nesting guard(open_, node);
   check_plugin(node);
   Object object = read(node);
-  NestedObject::Object made = make_shared_object(object.properties);
+  NestedObject::Object made = make_shared_object(object);
   finish(object);
   return shared_.emplace(&node, Shared{std::move(made), object.hash.value()}).first->second;
 }
@@ -203,12 +204,15 @@ void SceneBuilder::check_plugin(const XmlNode& node) const {
   if (node.tag == "medium") return check(media_.media);
   if (node.tag == "phase") return check(media_.phases);
   if (node.tag == "rfilter") return check(filter_plugins());
+  if (node.tag == "volume") return check(volume_plugins());
 }
 
-NestedObject::Object SceneBuilder::make_shared_object(Properties& p) {
+NestedObject::Object SceneBuilder::make_shared_object(Object& object) {
+  Properties& p = object.properties;
   if (p.kind() == "bsdf") return construct(bsdf_plugins(), p);
   if (p.kind() == "medium") return construct(media_.media, p);
   if (p.kind() == "phase") return construct(media_.phases, p);
+  if (p.kind() == "volume") return construct(volume_plugins(), p, FileContext{files_, object.hash});
   return construct(filter_plugins(), p);
 }
 
@@ -370,7 +374,7 @@ void SceneBuilder::top_level(const XmlNode& node) {
                                         "\" is part of the scene already");
   else if (is_value_tag(node.tag) || node.tag == "film" || node.tag == "sampler")
     diagnostics_.warn(node.where(), "<" + node.tag + "> directly in <scene> has no effect");
-  else if (node.tag == "texture" || node.tag == "volume")
+  else if (node.tag == "texture")
     throw Error(ErrorKind::Scene, node.where(), "<" + node.tag + "> is not supported yet");
   else if (node.tag != "emitter")
     throw Error(ErrorKind::Scene, node.where(),

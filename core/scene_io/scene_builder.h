@@ -59,7 +59,7 @@ class SceneBuilder {
   const XmlNode& target(const XmlNode& reference) const;
   void check_plugin(const XmlNode& node) const;
   const Shared& shared(const XmlNode& node);
-  NestedObject::Object make_shared_object(Properties& properties);
+  NestedObject::Object make_shared_object(Object& object);
   void finish(Object& object);
 
   FilmSettings film(const Child* child, ContentHash& hash);

@@ -39,7 +39,15 @@ std::string swift_error_of_text(SceneFolder& folder, const std::string& text) {
   return swift_error(folder, "hostile.xml");
 }
 
+std::string volume_scene(const std::string& file) {
+  return SceneFolder::wrap(
+      "<shape type=\"cube\"><medium type=\"heterogeneous\" name=\"interior\">"
+      "<volume type=\"gridvolume\" name=\"sigma_t\"><string name=\"filename\" value=\"" +
+      file + "\"/></volume></medium></shape>");
+}
+
 std::string mesh_scene(const std::string& file) {
+  if (fs::path(file).extension() == ".vol") return volume_scene(file);
   return SceneFolder::wrap("<shape type=\"" + fs::path(file).extension().string().substr(1) +
                            "\"><string name=\"filename\" value=\"" + file + "\"/></shape>");
 }
@@ -85,6 +93,22 @@ TEST(HostileInput, Corpus) {
       {"nan.obj", "expected a finite number"},
       {"no_faces.obj", "no faces"},
       {"overflowing_index.obj", "out of range"},
+      {"directions.vol", "directions (encoding 4)"},
+      {"empty.vol", "begins with \"VOL\" (at byte 0)"},
+      {"enormous.vol", "more than 2147483648 voxels"},
+      {"infinite.vol", "voxel (1, 1, 1) is not finite (at byte 76)"},
+      {"infinite_half.vol", "voxel (1, 1, 1) is not finite (at byte 62)"},
+      {"nan.vol", "voxel (1, 0, 1) is not finite"},
+      {"negative.vol", "voxel (1, 1, 0) is negative"},
+      {"negative_size.vol", "at least one voxel on each axis, found -2 (at byte 12)"},
+      {"no_voxels.vol", "at least one voxel"},
+      {"not_a_volume.vol", "begins with \"VOL\""},
+      {"old_version.vol", "expected version 3 of the format, found 2 (at byte 3)"},
+      {"only_a_header.vol", "ends within its header"},
+      {"overflowing.vol", "more than 2147483648 voxels"},
+      {"truncated.vol", "promises 8 values, but the file holds 7"},
+      {"two_channels.vol", "1 or 3 channels, found 2"},
+      {"unknown_encoding.vol", "found 77"},
   };
   SceneFolder folder;
   std::set<std::string> tested;

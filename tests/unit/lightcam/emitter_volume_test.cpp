@@ -24,9 +24,9 @@ class GlowingMedium final : public Medium {
   bool scatters() const override { return false; }
   bool emits() const override { return true; }
   RGB optical_depth(const Ray&, double t0, double t1) const override { return RGB(t1 - t0); }
-  std::optional<double> distance(const Ray&, double, double, int, double) const override {
-    return std::nullopt;
-  }
+  FlightEnd fly(const Ray&, double, double t1, int, double) const override { return {t1, false}; }
+  RGB max_emission(const Bounds& box) const override { return RGB(2 + box.hi.x, 5, 0); }
+  Majorant majorant(const Ray&, double, double t1) const override { return {t1, 1}; }
 };
 
 EmitterPoint at(const Vec3& p) {

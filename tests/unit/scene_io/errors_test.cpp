@@ -27,12 +27,11 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
        "2:3: the shape plugin \"spher\" is not supported (did you mean \"sphere\"?); known: "
        "\"cube\", "},
       {R"(<bsdf type="plastic"/>)", "2:1: the bsdf plugin \"plastic\" is not supported; known: "},
-      {R"(<medium type="heterogeneous"/>)",
-       "2:1: the medium plugin \"heterogeneous\" is not supported (did you mean \"homogeneous\"?); "
-       "known: "
-       "\"homogeneous\""},
-      {R"(<medium type="heterogeneous"><volume name="sigma_t" type="gridvolume"/></medium>)",
-       "2:1: the medium plugin \"heterogeneous\" is not supported"},
+      {R"(<medium type="heterogenous"/>)",
+       "2:1: the medium plugin \"heterogenous\" is not supported (did you mean "
+       "\"heterogeneous\"?); known: \"heterogeneous\" and \"homogeneous\""},
+      {R"(<medium type="heterogeneous"><volume name="sigma_t" type="vdbvolume"/></medium>)",
+       "2:30: the volume plugin \"vdbvolume\" is not supported; known: \"const\", "},
       {R"(<phase type="sggx"/>)",
        "2:1: the phase plugin \"sggx\" is not supported; known: \"blendphase\", "},
       {R"(<emitter type="envmap"/>)", "2:1: the emitter plugin \"envmap\" is not supported"},
