@@ -11,20 +11,16 @@
 #include "core/scene_io/load.h"
 #include "core/util/log.h"
 #include "media/registry.h"
-#include "mlt/bootstrap.h"
-#include "mlt/chain.h"
 #include "mlt/mutations/primary_sample_mutations.h"
-#include "mlt/pilot.h"
-#include "mlt/registry.h"
-#include "mlt/technique_distribution.h"
 #include "tests/benchmarks/embree_clock.h"
+#include "tests/benchmarks/path_chain.h"
 
 namespace fogbow {
 namespace {
 
 using benchmark::Counter;
 
-constexpr std::uint64_t kSeed = 1;
+constexpr std::uint64_t kSeed = PathChain::kSeed;
 
 Counter rate(double count) { return Counter(count, Counter::kIsRate); }
 
@@ -93,7 +89,6 @@ void mutate(benchmark::State& state, const MutationTable<State>& table, Chain<St
   state.counters["rays/mutation"] = rays / static_cast<double>(state.iterations());
 }
 
-constexpr int kMaxDepth = 64;
 /// Of one mutation: so many, if they come within this time.
 constexpr int kProposals = 4000;
 constexpr double kMostSeconds = 10;
@@ -103,21 +98,6 @@ void mutate_samples(benchmark::State& state, const Estimator& estimator) {
   Chain<PrimarySample> chain(Bootstrap(estimator, kSeed, 2048).start(0, 0), table);
   mutate(state, table, chain);
 }
-
-/// A chain of all mutations of paths.
-struct PathChain {
-  TechniqueDistribution techniques;
-  MutationTable<PathSample> table;
-  Chain<PathSample> chain;
-
-  PathChain(const Scene& scene, const Estimator& bdpt)
-      : techniques(run_pilot(bdpt, 1, kSeed, 1 << 14).techniques, kMaxDepth + 1),
-        table(make_path_mutations(default_mutation_weights(), techniques, kMaxDepth + 1)),
-        chain(
-            PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5)
-                .value(),
-            table) {}
-};
 
 void mutate_paths(benchmark::State& state, const Scene& scene, const Estimator& bdpt) {
   PathChain c(scene, bdpt);

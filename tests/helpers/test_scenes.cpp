@@ -189,6 +189,64 @@ SceneDescription flame() {
   return b.done();
 }
 
+/// Voxels with three channels: nothing in one part, some channels alone in others.
+VoxelData patches(double r, double g, double b) {
+  constexpr int n = 20;
+  VoxelData data{{n, n, n}, 3, {}};
+  for (int z = 0; z < n; ++z)
+    for (int y = 0; y < n; ++y)
+      for (int x = 0; x < n; ++x) {
+        const double wave = 1 + std::sin(1.1 * x + 0.7 * y) * std::cos(0.9 * z - 0.4 * y);
+        const bool empty = x + y < 8 || z > 15;
+        for (const double v : {empty ? 0 : r, empty || y > 12 ? 0 : g, empty || x > 12 ? 0 : b})
+          data.values.push_back(static_cast<float>(v * wave));
+      }
+  return data;
+}
+
+/// Heterogeneous, chromatic and emissive, in a turned box of voxels.
+SceneDescription patchy_flame() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.2, RGB(4));
+  const Transform box = Transform::rotate(Vec3(1, 3, 0), 20) * Transform::scale(Vec3(1.2)) *
+                        Transform::translate(Vec3(-0.5));
+  const auto volume = [&](const VoxelData& data) {
+    return std::make_shared<Volume>(data, VolumeSettings{box});
+  };
+  HeterogeneousSettings s;
+  s.sigma_t = volume(patches(1, 0.7, 1.4));
+  s.scale = 1.5;
+  s.albedo = volume(patches(0.3, 0.4, 0.45));
+  s.emission = volume(patches(1.5, 0.8, 0.4));
+  b.bounds(make_cube(Transform::rotate(Vec3(1, 3, 0), 20) * Transform::scale(Vec3(0.6))),
+           make_null(), make_heterogeneous_medium(s, make_isotropic_phase()), nullptr);
+  return b.done();
+}
+
+/// Smoke behind glass: specular chains that end in it, and free space all around it.
+SceneDescription smoke_in_glass() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.4, RGB(10));
+  VoxelData data{{24, 24, 24}, 1, {}};
+  for (int z = 0; z < 24; ++z)
+    for (int y = 0; y < 24; ++y)
+      for (int x = 0; x < 24; ++x) {
+        const Vec3 p = Vec3(x, y, z) / 23.0 - 0.5;
+        const double swirl = 1 + std::sin(14 * p.x + 9 * p.y) * std::cos(11 * p.z);
+        data.values.push_back(static_cast<float>(std::max(0.0, 1 - 6 * dot(p, p)) * swirl));
+      }
+  HeterogeneousSettings s;
+  s.sigma_t = std::make_shared<Volume>(
+      data,
+      VolumeSettings{Transform::translate(Vec3(-0.6, -0.8, -0.6)) * Transform::scale(Vec3(1.2))});
+  s.scale = 4;
+  s.albedo = std::make_shared<Volume>(RGB(0.8, 0.7, 0.9));
+  b.bounds(sphere(Vec3(0, -0.2, 0), 0.6), make_dielectric(1.4),
+           make_heterogeneous_medium(s, make_henyey_greenstein(0.4)), nullptr);
+  b.add(sphere(Vec3(0.15, -0.45, 0.1), 0.15), gray());
+  return b.done();
+}
+
 SceneDescription sky_lens() {
   Builder b;
   b.camera(Vec3(0, 0.3, 3), Vec3(0, 0, 0), 45, 0.15).floor(gray());
@@ -221,6 +279,8 @@ const std::vector<TestScene>& test_scenes() {
                                                 {"mirror-fog", mirror_fog},
                                                 {"water", water},
                                                 {"flame", flame},
+                                                {"patchy-flame", patchy_flame},
+                                                {"smoke-in-glass", smoke_in_glass},
                                                 {"sky-lens", sky_lens},
                                                 {"two-kinds-of-glass", two_kinds_of_glass}};
   return scenes;
