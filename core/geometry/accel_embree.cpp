@@ -258,7 +258,7 @@ struct Accel::Impl {
 
   void attach(std::uint32_t id) {
     const Shape& shape = *shapes[id];
-    planar.push_back(shape.planar());
+    planar.push_back(shape.polygonal());
     quads.push_back(shape.primitive_kind() == PrimitiveKind::Quads);
     RTCGeometry geometry;
     if (shape.primitive_kind() == PrimitiveKind::Analytic) {
@@ -328,7 +328,7 @@ struct Accel::Impl {
         [](RTCPointQueryFunctionArguments* args) {
           detail::Decision& d = *static_cast<detail::Decision*>(args->userPtr);
           const PrimitiveId id{args->geomID, args->primID};
-          if (!d.shapes[id.shape]->planar() || (id != d.from && id != d.to)) d.accept(id);
+          if (!d.shapes[id.shape]->polygonal() || (id != d.from && id != d.to)) d.accept(id);
           return false;  // the ball keeps its size
         },
         &decision);

@@ -49,7 +49,7 @@ struct Decision {
       return shape.intersect(id.primitive, back, true);
     }
     auto hit = shape.intersect(id.primitive, *ray, id == from);
-    if (!hit && shape.planar()) {
+    if (!hit && shape.polygonal()) {
       const Ray line{ray->o, ray->d, -kInfinity, kInfinity};
       if (!shape.intersect(id.primitive, line, false)) {
         ++doubts;

@@ -98,7 +98,7 @@ class Mesh final : public Shape {
     for (const std::uint32_t v : triangles_[primitive]) b.extend(Vec3(positions_[v]));
     return b;
   }
-  bool planar() const override { return true; }
+  bool polygonal() const override { return true; }
 
   std::optional<PrimitiveHit> intersect(std::uint32_t primitive, const Ray& ray,
                                         bool leaving) const override {

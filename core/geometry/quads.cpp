@@ -41,7 +41,7 @@ class Quads final : public Shape {
     for (const std::uint32_t v : faces_[primitive]) b.extend(corners_[v]);
     return b;
   }
-  bool planar() const override { return true; }
+  bool polygonal() const override { return true; }
 
   std::optional<PrimitiveHit> intersect(std::uint32_t primitive, const Ray& ray,
                                         bool leaving) const override {

@@ -71,8 +71,9 @@ class Shape {
   /// not a hit.
   virtual std::optional<PrimitiveHit> intersect(std::uint32_t primitive, const Ray& ray,
                                                 bool leaving) const = 0;
-  /// A ray that starts on a planar primitive cannot meet it again.
-  virtual bool planar() const = 0;
+  /// Primitives are flat, with straight edges that neighbours may share; a ray that starts on one
+  /// cannot meet it again.
+  virtual bool polygonal() const = 0;
 
   /// True only if the primitive has no point in the box; may be false where it has none either.
   virtual bool avoids(std::uint32_t primitive, const Bounds& box) const;

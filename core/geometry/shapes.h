@@ -30,4 +30,12 @@ std::shared_ptr<const Shape> make_rectangle(const Transform& to_world, bool flip
 /// The image of [−1,1]³, normals outwards; exact.
 std::shared_ptr<const Shape> make_cube(const Transform& to_world, bool flip_normals = false);
 
+/// The image of the unit disk in z = 0 with normal +z, an ellipse; exact. uv is (radius,
+/// azimuth/2π) on the unit disk.
+std::shared_ptr<const Shape> make_disk(const Transform& to_world, bool flip_normals = false);
+/// From p0 to p1, without caps, normals outwards; exact. Throws std::domain_error if its image
+/// under `to_world` is no cylinder of circular section.
+std::shared_ptr<const Shape> make_cylinder(const Vec3& p0, const Vec3& p1, double radius,
+                                           const Transform& to_world, bool flip_normals = false);
+
 }  // namespace fogbow

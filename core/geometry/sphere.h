@@ -21,7 +21,7 @@ class Sphere final : public Shape {
   Bounds bounds() const override { return {center_ - radius_, center_ + radius_}; }
   Bounds primitive_bounds(std::uint32_t) const override { return bounds(); }
   std::optional<PrimitiveHit> intersect(std::uint32_t, const Ray& ray, bool leaving) const override;
-  bool planar() const override { return false; }
+  bool polygonal() const override { return false; }
   bool avoids(std::uint32_t, const Bounds& box) const override;
   SurfacePoint surface_point(std::uint32_t, const Vec2& local) const override;
   SurfaceDerivatives derivatives(const SurfacePoint& point) const override;

@@ -52,6 +52,18 @@ TEST(Boundary, HasTheVolumeOfItsShape) {
               28 * kPi / 3, 1e-12);
 }
 
+TEST(Boundary, OfACanIsClosed) {
+  const auto side = make_cylinder({0, 0, -1}, {0, 0, 2}, 1.5, Transform());
+  const auto lid = [](double z, bool flip) {
+    return make_disk(Transform::translate({0, 0, z}) * Transform::scale(Vec3(1.5)), flip);
+  };
+  const BoundaryGroup can = group_of({side, lid(2, false), lid(-1, true)});
+  EXPECT_TRUE(can.closed());
+  EXPECT_TRUE(can.defects().empty());
+  EXPECT_NEAR(can.volume() / (kPi * sqr(1.5) * 3), 1, 0.002);  // of the inscribed prism
+  expect_one(group_of({side, lid(2, false)}), Kind::Open, "64 border edges");
+}
+
 TEST(Boundary, WithoutALidIsOpen) {
   TriangleMeshData data = box(1);
   data.triangles.pop_back();

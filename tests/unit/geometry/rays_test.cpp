@@ -72,7 +72,7 @@ TEST(Rays, NeitherLeakNorMeetTheirOwnSurface) {
         if (!(lowest < 0)) continue;
         const auto in = accel.intersect({x.position, grazing(x, rng, lowest, -1)}, id);
         leaks += !in;
-        wrong_primitive += in && c.shape->planar() && in->id == id;
+        wrong_primitive += in && c.shape->polygonal() && in->id == id;
         false_hits += accel.intersect({x.position, grazing(x, rng, lowest, 1)}, id).has_value();
       }
       EXPECT_EQ(leaks, 0) << name(c, placement);
@@ -111,6 +111,49 @@ TEST(Rays, DoNotSlipThroughEdges) {
     EXPECT_EQ(leaks, 0) << placement.scale;
     EXPECT_LT(pinholes, kRays / 3 / 200) << placement.scale;
     EXPECT_EQ(off_target, 0) << placement.scale;
+  }
+}
+
+/// A can of a cylinder and two disks: rays from inside meet it also where its parts join.
+TEST(Rays, DoNotSlipThroughTheRimsOfACan) {
+  constexpr int kRays = 100000;
+  for (const Placement& placement : kPlacements) {
+    const double s = placement.scale;
+    const Transform to_world = Transform::translate(placement.offset) *
+                               Transform::rotate({1, 2, 3}, 50) * Transform::scale(Vec3(s));
+    const auto side = make_cylinder({0, 0, -1}, {0, 0, 1}, 1, to_world);
+    const auto top = make_disk(to_world * Transform::translate({0, 0, 1}));
+    const auto bottom = make_disk(to_world * Transform::translate({0, 0, -1}), true);
+    const std::array<const Shape*, 3> shapes{side.get(), top.get(), bottom.get()};
+    const Accel accel(shapes);
+    Rng rng(suite_seed(), RngDomain::Test, 8, 0);
+    int leaks = 0, wrong_part = 0;
+    std::array<int, 3> met{};
+    for (int i = 0; i < kRays; ++i) {
+      // From inside, or from one of the parts, at a rim or anywhere.
+      Vec3 o = to_world.point(0.9 * (2.0 * uniform3(rng) - 1.0) * Vec3(0.7, 0.7, 1));
+      PrimitiveId from;
+      if (i % 2) {
+        from = {static_cast<std::uint32_t>(rng.uniform() * 3), 0};
+        o = shapes[from.shape]->sample(uniform2(rng)).position;
+      }
+      const double phi = 2 * kPi * rng.uniform(), end = rng.uniform() < 0.5 ? -1 : 1;
+      // At a rim, the side, or a lid.
+      const double where = rng.uniform(), inside = 0.999 * std::sqrt(rng.uniform());
+      const double r = where < 0.75 ? 1 : inside;
+      const double z = where < 0.5 || where >= 0.75 ? end : inside * end;
+      const Vec3 target = to_world.point({r * std::cos(phi), r * std::sin(phi), z});
+      const std::uint32_t aimed = where < 0.75 ? 0 : end > 0 ? 1 : 2;
+      if (!(length(target - o) > 1e-3 * s) || from.shape == (aimed > 0 ? aimed : 3u)) continue;
+      const auto hit = accel.intersect({o, normalize(target - o)}, from);
+      leaks += !hit;
+      if (!hit) continue;
+      ++met[hit->id.shape];
+      wrong_part += where > 0.5 && hit->id.shape != aimed;
+    }
+    EXPECT_EQ(leaks, 0) << s << " at " << placement.offset.x;
+    EXPECT_EQ(wrong_part, 0) << s << " at " << placement.offset.x;
+    for (const int count : met) EXPECT_GT(count, kRays / 50);
   }
 }
 

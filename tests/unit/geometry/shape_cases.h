@@ -21,6 +21,16 @@ inline Transform skewed(double scale, const Vec3& offset) {
          Transform::scale(scale * Vec3(1, 0.6, 1.7));
 }
 
+inline std::pair<Vec3, Vec3> cylinder_ends(double scale, const Vec3& offset) {
+  const Vec3 half = scale * Vec3(0.3, -0.8, 0.6);
+  return {offset - half, offset + half};
+}
+
+inline std::shared_ptr<const Shape> cylinder(double scale, const Vec3& offset, bool flip = false) {
+  const auto [p0, p1] = cylinder_ends(scale, offset);
+  return make_cylinder(p0, p1, 0.7 * scale, Transform(), flip);
+}
+
 inline TriangleMeshData mesh_data(const Shape& shape) {
   Tessellation t = shape.tessellate();
   return {std::move(t.vertices), {}, {}, std::move(t.triangles)};
@@ -52,6 +62,11 @@ inline std::vector<ShapeCase> all_cases(double scale, const Vec3& offset) {
   cases.push_back(
       {"mirrored rectangle", make_rectangle(skewed(scale, offset) * Transform::scale({-1, 1, 1}))});
   cases.push_back({"flipped cube", make_cube(skewed(scale, offset), true)});
+  cases.push_back({"disk", make_disk(skewed(scale, offset))});
+  cases.push_back(
+      {"mirrored disk", make_disk(skewed(scale, offset) * Transform::scale({-1, 1, 1}))});
+  cases.push_back({"cylinder", cylinder(scale, offset)});
+  cases.push_back({"flipped cylinder", cylinder(scale, offset, true)});
   cases.push_back({"flipped sphere", make_sphere(offset, 0.7 * scale, true)});
   TriangleMeshData faceted = ellipsoid_data(scale, offset);
   faceted.normals.clear();

@@ -34,6 +34,9 @@ TEST(Shapes, AreaIsThatOfTheTessellation) {
   EXPECT_DOUBLE_EQ(make_sphere(kOffset, 2)->area(), 16 * kPi);
   EXPECT_DOUBLE_EQ(make_cube(Transform::scale({1, 2, 3}))->area(), 8 * (2 + 3 + 6));
   EXPECT_DOUBLE_EQ(make_rectangle(Transform::scale({1, 2, 3}))->area(), 8);
+  EXPECT_DOUBLE_EQ(make_disk(Transform::scale({2, 3, 5}))->area(), 6 * kPi);
+  EXPECT_DOUBLE_EQ(make_cylinder({1, 0, 0}, {1, 0, 2}, 0.5, Transform::scale({3, 3, 7}))->area(),
+                   2 * kPi * 1.5 * 14);
 }
 
 /// Which cell of equal or known area a point lies in, from its position alone.
@@ -52,6 +55,36 @@ Cells sphere_cells() {
         return static_cast<std::size_t>(ring * kSectors +
                                         std::min(static_cast<int>(turn * kSectors), kSectors - 1));
       }};
+}
+
+/// Rings of equal area on the unit disk, sixteen of sixteen sectors.
+Cells disk_cells() {
+  constexpr int kRings = 16, kSectors = 16;
+  const Transform to_disk = testing::skewed(kScale, kOffset).inverse();
+  return {std::vector<double>(kRings * kSectors, 1.0 / (kRings * kSectors)),
+          [to_disk](const SurfacePoint& x) {
+            const Vec3 p = to_disk.point(x.position);
+            EXPECT_NEAR(p.z, 0, 1e-13);
+            const int ring = std::min(static_cast<int>((p.x * p.x + p.y * p.y) * kRings), 15);
+            const double turn = std::atan2(p.y, p.x) / (2 * kPi) + 0.5;
+            return static_cast<std::size_t>(ring * kSectors +
+                                            std::min(static_cast<int>(turn * kSectors), 15));
+          }};
+}
+
+Cells cylinder_cells() {
+  constexpr int kSlices = 16, kSectors = 16;
+  const auto [p0, p1] = testing::cylinder_ends(kScale, kOffset);
+  const Vec3 axis = normalize(p1 - p0), a = normalize(cross(axis, Vec3(0.3, -0.7, 0.2)));
+  return {std::vector<double>(kSlices * kSectors, 1.0 / (kSlices * kSectors)),
+          [=, p0 = p0, p1 = p1](const SurfacePoint& x) {
+            const Vec3 p = x.position - p0;
+            const double z = dot(p, axis) / length(p1 - p0);
+            EXPECT_NEAR(length(cross(p, axis)), 0.7 * kScale, 1e-13 * kScale);
+            const double turn = std::atan2(dot(p, cross(axis, a)), dot(p, a)) / (2 * kPi) + 0.5;
+            return static_cast<std::size_t>(std::min(static_cast<int>(z * kSlices), 15) * kSectors +
+                                            std::min(static_cast<int>(turn * kSectors), 15));
+          }};
 }
 
 /// The triangles of the tessellation, each cut in four at the middles of its edges.
@@ -92,9 +125,11 @@ TEST(Shapes, SamplesAreUniform) {
   const auto cases = all_cases(kScale, kOffset);
   const double level = testing::sidak(testing::kSuiteFalseAlarm, static_cast<int>(cases.size()));
   for (const ShapeCase& c : cases) {
-    const Cells cells = c.shape->primitive_kind() == PrimitiveKind::Analytic
-                            ? sphere_cells()
-                            : triangle_cells(*c.shape);
+    const bool curved = c.shape->primitive_kind() == PrimitiveKind::Analytic;
+    const Cells cells = !curved                                        ? triangle_cells(*c.shape)
+                        : c.name.find("disk") != std::string::npos     ? disk_cells()
+                        : c.name.find("cylinder") != std::string::npos ? cylinder_cells()
+                                                                       : sphere_cells();
     constexpr int kSamples = 200000;
     std::vector<std::uint64_t> counts(cells.share.size(), 0);
     std::vector<double> expected;
@@ -139,7 +174,8 @@ TEST(Shapes, PointsCarryConsistentFrames) {
 TEST(Shapes, NormalsPointOutwardsUnlessFlipped) {
   Rng rng(suite_seed(), RngDomain::Test, 13, 0);
   for (const ShapeCase& c : all_cases(kScale, kOffset)) {
-    if (c.name.find("rectangle") != std::string::npos) continue;
+    if (c.name.find("rectangle") != std::string::npos || c.name.find("disk") != std::string::npos)
+      continue;
     const double side = c.name.find("flipped") == 0 ? -1 : 1;
     for (int i = 0; i < 500; ++i) {
       const SurfacePoint x = c.shape->sample(uniform2(rng));
@@ -151,6 +187,8 @@ TEST(Shapes, NormalsPointOutwardsUnlessFlipped) {
     const auto rectangle = make_rectangle(Transform::scale(s));
     EXPECT_EQ(rectangle->sample(Vec2(0.5)).n_g, Vec3(0, 0, s.z));
     EXPECT_EQ(make_rectangle(Transform::scale(s), true)->sample(Vec2(0.5)).n_g, Vec3(0, 0, -s.z));
+    EXPECT_EQ(make_disk(Transform::scale(s))->sample(Vec2(0.5)).n_g, Vec3(0, 0, s.z));
+    EXPECT_EQ(make_disk(Transform::scale(s), true)->sample(Vec2(0.5)).n_g, Vec3(0, 0, -s.z));
   }
 }
 
@@ -158,14 +196,10 @@ TEST(Shapes, NormalsPointOutwardsUnlessFlipped) {
 SurfacePoint moved(const Shape& shape, const SurfacePoint& x, const Vec2& step) {
   if (shape.primitive_kind() != PrimitiveKind::Analytic)
     return shape.surface_point(x.primitive, x.local + step);
-  const double angle = length(Vec3(step, 0)) /
-                       (0.5 * length(shape.bounds().hi - shape.bounds().lo) / std::sqrt(3.0));
-  const Vec3 radial = x.position - shape.bounds().center();
-  const Vec3 along = normalize(step.x * x.shading.s + step.y * x.shading.t);
-  const Vec3 p = std::cos(angle) * radial + std::sin(angle) * length(radial) * along;
-  // Found by a ray, so that nothing of the shape's own coordinates is used.
-  const Vec3 outside = shape.bounds().center() + 2.0 * p;
-  const auto hit = shape.intersect(0, {outside, -normalize(p)}, false);
+  // Down from above the tangent plane, so that nothing of the shape's own coordinates is used.
+  const SurfaceDerivatives d = shape.derivatives(x);
+  const Vec3 above = x.position + step.x * d.dp_du + step.y * d.dp_dv + 0.1 * kScale * x.n_g;
+  const auto hit = shape.intersect(0, {above, -x.n_g}, false);
   return shape.surface_point(0, hit.value().local);
 }
 
@@ -190,7 +224,8 @@ TEST(Shapes, DerivativesAreThoseOfFiniteDifferences) {
       largest_turn = std::fmax(largest_turn, length(d.dn_du));
     }
     const bool flat = c.name.find("cube") != std::string::npos ||
-                      c.name.find("rectangle") != std::string::npos || c.name == "mesh box" ||
+                      c.name.find("rectangle") != std::string::npos ||
+                      c.name.find("disk") != std::string::npos || c.name == "mesh box" ||
                       c.name == "faceted mesh";
     EXPECT_EQ(largest_turn > 0.01, !flat) << c.name;
   }
@@ -221,6 +256,107 @@ TEST(Sphere, LeavingExcludesTheRootAtZeroAndNoOther) {
     EXPECT_NEAR(chord->t, 2 * 0.7 * sine, 1e-14);
     EXPECT_FALSE(sphere->intersect(0, {x.position, w - 2 * dot(w, x.n_g) * x.n_g}, true));
   }
+}
+
+/// Mitsuba 3.9.1 (scalar_rgb): `mi.load_dict({'type': 'scene', 's': {...}}).ray_intersect(...)`.
+TEST(Disk, IsMitsubas) {
+  const auto disk = make_disk(Transform::scale({2, 1, 1}));
+  const auto hit = disk->intersect(0, {{1.2, 0.4, 2}, {0, 0, -1}}, false);
+  ASSERT_TRUE(hit);
+  EXPECT_DOUBLE_EQ(hit->t, 2);
+  const SurfacePoint x = disk->surface_point(0, hit->local);
+  EXPECT_LT(length(x.position - Vec3(1.2, 0.4, 0)), 1e-15);
+  EXPECT_EQ(x.n_g, Vec3(0, 0, 1));
+  EXPECT_NEAR(x.uv.x, 0.72111, 1e-6);
+  EXPECT_NEAR(x.uv.y, 0.0935835, 1e-7);
+}
+
+TEST(Disk, EndsAtItsRim) {
+  const Transform to_world = testing::skewed(1, Vec3(3, 2, 1));
+  const auto disk = make_disk(to_world);
+  Rng rng(suite_seed(), RngDomain::Test, 16, 0);
+  for (int i = 0; i < 20000; ++i) {
+    const double r = 2 * rng.uniform(), phi = 2 * kPi * rng.uniform();
+    if (std::fabs(r - 1) < 1e-12) continue;
+    const Vec3 target = to_world.point({r * std::cos(phi), r * std::sin(phi), 0});
+    const Vec3 o = target + 3.0 * warp::sample_sphere(uniform2(rng));
+    EXPECT_EQ(disk->intersect(0, {o, normalize(target - o)}, false).has_value(), r < 1);
+  }
+}
+
+TEST(Cylinder, IsMitsubas) {
+  struct Expected {
+    Vec3 p0, p1;
+    double radius;
+    Transform to_world;
+    Vec3 origin;
+    double t;
+    Vec3 n;
+    Vec2 uv;
+  };
+  const Vec3 o(0), z(0, 0, 1);
+  const std::vector<Expected> all{
+      {o, z, 1, Transform(), {5, 0.3, 0.5}, 4.04606, {0.953939, 0.3, 0}, {0.0484933, 0.5}},
+      {z, 3.0 * z, 2, Transform(), {5, 0.3, 1.5}, 3.02263, {0.988686, 0.15, 0}, {0.0239637, 0.25}},
+      {o,
+       z,
+       1,
+       Transform::scale({-1, 1, 1}),
+       {5, 0.3, 0.5},
+       4.04606,
+       {0.953939, 0.3, 0},
+       {0.451507, 0.5}},
+      {o,
+       z,
+       1,
+       Transform::scale({1, 1, 3}),
+       {5, 0.3, 0.5},
+       4.04606,
+       {0.953939, 0.3, 0},
+       {0.0484933, 0.166667}}};
+  for (const Expected& e : all)
+    for (const bool flip : {false, true}) {
+      const auto cylinder = make_cylinder(e.p0, e.p1, e.radius, e.to_world, flip);
+      const auto hit = cylinder->intersect(0, {e.origin, {-1, 0, 0}}, false);
+      ASSERT_TRUE(hit);
+      EXPECT_NEAR(hit->t, e.t, 1e-5);
+      const SurfacePoint x = cylinder->surface_point(0, hit->local);
+      EXPECT_LT(length(x.n_g - (flip ? -1.0 : 1.0) * e.n), 2e-6);
+      EXPECT_LT(length(Vec3(x.uv - e.uv, 0)), 1e-6);
+    }
+  // eval_parameterization([0.25, 0.5]) of p0 = 0, p1 = (1, 2, 3), radius 0.5
+  const SurfacePoint x =
+      make_cylinder(o, {1, 2, 3}, 0.5, Transform())->surface_point(0, {0.25, 0.5});
+  EXPECT_LT(length(x.position - Vec3(0.460357, 1.42071, 1.23274)), 1e-5);
+}
+
+TEST(Cylinder, IsHitFromInsideAndOutsideAndThroughItsOpenEnds) {
+  const auto cylinder = make_cylinder({0, 0, -1}, {0, 0, 1}, 1, Transform());
+  const auto t = [&](const Vec3& o, const Vec3& d, bool leaving = false) {
+    const auto hit = cylinder->intersect(0, {o, normalize(d)}, leaving);
+    return hit ? hit->t : -1;
+  };
+  EXPECT_DOUBLE_EQ(t({-3, 0, 0}, {1, 0, 0}), 2);
+  EXPECT_DOUBLE_EQ(t({0, 0, 0}, {1, 0, 0}), 1);
+  EXPECT_EQ(t({0, 0, 0}, {0, 0, 1}), -1);
+  EXPECT_EQ(t({0.5, 0, 5}, {0, 0, -1}), -1);
+  // In at the top, onto the inside of the far wall.
+  EXPECT_NEAR(t({-1, 0, 2}, {1, 0, -1}), 2 * std::sqrt(2), 1e-14);
+  EXPECT_DOUBLE_EQ(t({-1, 0, 0}, {1, 0, 0}, true), 2);
+  EXPECT_EQ(t({-1, 0, 0}, {-1, 0, 0}, true), -1);
+  EXPECT_EQ(t({-1, 0, 0}, {1, 0, 2}, true), -1);
+}
+
+TEST(Cylinder, RefusesWhatIsNone) {
+  const Vec3 o(0), z(0, 0, 1);
+  EXPECT_THROW(make_cylinder(o, o, 1, Transform()), std::domain_error);
+  EXPECT_THROW(make_cylinder(o, z, 0, Transform()), std::domain_error);
+  EXPECT_THROW(make_cylinder(o, z, std::nan(""), Transform()), std::domain_error);
+  EXPECT_THROW(make_cylinder(o, {0, kInfinity, 0}, 1, Transform()), std::domain_error);
+  EXPECT_THROW(make_cylinder(o, z, 1, Transform::scale({1, 2, 1})), std::domain_error);
+  Mat4 shear(1.0);
+  shear[2][0] = 0.3;
+  EXPECT_THROW(make_cylinder(o, z, 1, Transform(shear)), std::domain_error);
 }
 
 TEST(Mesh, TurnsShadingNormalsToTheGeometricSide) {
