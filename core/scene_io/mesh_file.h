@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <cstdint>
 #include <string>
 #include <string_view>
 
@@ -18,5 +19,14 @@ namespace fogbow {
 TriangleMeshData parse_ply(std::string_view bytes, const std::string& name);
 /// Wavefront OBJ: v, vt, vn and f; everything else is ignored. One vertex per distinct (v, vt, vn).
 TriangleMeshData parse_obj(std::string_view text, const std::string& name);
+
+struct SerializedMesh {
+  TriangleMeshData mesh;
+  bool face_normals = false;  ///< it is to be shaded flat
+};
+/// Mitsuba's compressed format, versions 3 and 4; the mesh of that number, from 0. Colours are
+/// skipped.
+SerializedMesh parse_serialized(std::string_view bytes, const std::string& name,
+                                std::int64_t index);
 
 }  // namespace fogbow

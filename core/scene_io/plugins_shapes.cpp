@@ -34,6 +34,18 @@ std::shared_ptr<const Shape> cube(Properties& p, const ShapeContext&) {
   return make_cube(to_world, p.boolean("flip_normals", false));
 }
 
+std::shared_ptr<const Shape> disk(Properties& p, const ShapeContext&) {
+  const Transform to_world = p.transform("to_world");
+  return make_disk(to_world, p.boolean("flip_normals", false));
+}
+
+std::shared_ptr<const Shape> cylinder(Properties& p, const ShapeContext&) {
+  const Vec3 p0 = p.point("p0", Vec3(0)), p1 = p.point("p1", Vec3(0, 0, 1));
+  const double radius = p.positive_number("radius", 1);
+  const Transform to_world = p.transform("to_world");
+  return make_cylinder(p0, p1, radius, to_world, p.boolean("flip_normals", false));
+}
+
 void flip_winding(TriangleMeshData& mesh) {
   for (auto& triangle : mesh.triangles) std::swap(triangle[1], triangle[2]);
 }
@@ -66,9 +78,10 @@ void fill_normals(TriangleMeshData& mesh) {
     if (is_black(mesh.normals[i])) mesh.normals[i] = computed[i];
 }
 
-std::shared_ptr<const Shape> mesh_shape(Properties& p, TriangleMeshData mesh, bool flip_uvs) {
+std::shared_ptr<const Shape> mesh_shape(Properties& p, TriangleMeshData mesh, bool flip_uvs,
+                                        bool flat = false) {
   const Transform to_world = p.transform("to_world");
-  const bool face_normals = p.boolean("face_normals", false);
+  const bool face_normals = p.boolean("face_normals", false) || flat;
   const bool flip_normals = p.boolean("flip_normals", false);
   if (p.boolean("flip_tex_coords", flip_uvs))
     for (Vec2& uv : mesh.uvs) uv.y = 1 - uv.y;
@@ -106,11 +119,22 @@ std::shared_ptr<const Shape> obj(Properties& p, const ShapeContext& context) {
   return mesh_shape(p, parse_obj(bytes, path), true);
 }
 
+std::shared_ptr<const Shape> serialized(Properties& p, const ShapeContext& context) {
+  const std::int64_t index = p.integer("shape_index", 0);
+  if (index < 0) p.fail("shape_index", "\"shape_index\" must not be negative");
+  std::string path;
+  const std::string bytes = read_mesh_bytes(p, context, path);
+  SerializedMesh file = parse_serialized(bytes, path, index);
+  return mesh_shape(p, std::move(file.mesh), false, file.face_normals);
+}
+
 }  // namespace
 
 const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins() {
   static const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)> table{
-      {"sphere", sphere}, {"rectangle", rectangle}, {"cube", cube}, {"ply", ply}, {"obj", obj}};
+      {"sphere", sphere}, {"rectangle", rectangle},  {"cube", cube},
+      {"disk", disk},     {"cylinder", cylinder},    {"ply", ply},
+      {"obj", obj},       {"serialized", serialized}};
   return table;
 }
 

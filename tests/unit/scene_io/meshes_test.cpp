@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
+#include <zlib.h>
 
 #include <algorithm>
 #include <cstring>
+#include <initializer_list>
 
 #include "core/scene_io/mesh_file.h"
 
@@ -230,6 +232,113 @@ TEST(Obj, ErrorsNameTheirPlace) {
             "m:4:7: expected the index of a vertex, found \"x\"");
   EXPECT_EQ(error_of(parse_obj, v + "f 1 2 3.5\n"),
             "m:4:8: expected space after the corner of a face, found \".5\"");
+}
+
+/// A mesh of two triangles, its header and flags as Mitsuba 0.6's documentation lists them.
+template <class T>
+std::string serialized_mesh(int version, std::uint32_t flags, double shift = 0) {
+  std::string raw;
+  put(raw, flags | (sizeof(T) == 4 ? 0x1000u : 0x2000u), false);
+  if (version == 4) raw += std::string("a name\0", 7);
+  put(raw, std::uint64_t{4}, false);
+  put(raw, std::uint64_t{2}, false);
+  const auto numbers = [&](std::initializer_list<double> values) {
+    for (const double v : values) put(raw, static_cast<T>(v), false);
+  };
+  numbers({0 + shift, 0, 0, 1 + shift, 0, 0, 1 + shift, 1, 0, 0 + shift, 1, 0});
+  if (flags & 1) numbers({0, 0, 1, 0, 0, 1, 0, 0.5, 1, 0, 0, 1});
+  if (flags & 2) numbers({0, 0, 1, 0, 1, 0.25, 0, 1});
+  if (flags & 8) numbers({1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0});
+  for (const std::uint32_t v : {0, 1, 2, 0, 2, 3}) put(raw, v, false);
+  std::string packed(compressBound(raw.size()), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+           reinterpret_cast<const Bytef*>(raw.data()), raw.size());
+  packed.resize(size);
+  std::string file;
+  put(file, std::uint16_t{0x041C}, false);
+  put(file, static_cast<std::uint16_t>(version), false);
+  return file + packed;
+}
+
+std::string serialized_file(int version, const std::vector<std::string>& meshes) {
+  std::string file, ends;
+  for (const std::string& mesh : meshes) {
+    if (version == 4)
+      put(ends, static_cast<std::uint64_t>(file.size()), false);
+    else
+      put(ends, static_cast<std::uint32_t>(file.size()), false);
+    file += mesh;
+  }
+  put(ends, static_cast<std::uint32_t>(meshes.size()), false);
+  return file + ends;
+}
+
+TEST(Serialized, EveryVersionPrecisionAndAttribute) {
+  for (const int version : {3, 4})
+    for (std::uint32_t flags = 0; flags < 32; ++flags) {
+      if (flags & 4) continue;
+      for (const bool single : {true, false}) {
+        const std::string bytes = single ? serialized_mesh<float>(version, flags)
+                                         : serialized_mesh<double>(version, flags);
+        const SerializedMesh file = parse_serialized(bytes, "m", 0);
+        const std::vector<Vec3> positions{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}};
+        const std::vector<Triangle> triangles{{0, 1, 2}, {0, 2, 3}};
+        EXPECT_EQ(file.mesh.positions, positions);
+        EXPECT_EQ(file.mesh.triangles, triangles);
+        EXPECT_EQ(file.mesh.normals.size(), flags & 1 ? 4u : 0u);
+        EXPECT_EQ(file.mesh.uvs.size(), flags & 2 ? 4u : 0u);
+        EXPECT_EQ(file.face_normals, bool(flags & 16));
+        if (flags & 1) {
+          EXPECT_EQ(file.mesh.normals[2], Vec3(0, 0.5, 1));
+        }
+        if (flags & 2) {
+          EXPECT_EQ(file.mesh.uvs[2], Vec2(1, 0.25));
+        }
+      }
+    }
+}
+
+TEST(Serialized, MeshesAreFoundByNumber) {
+  for (const int version : {3, 4}) {
+    const std::string bytes = serialized_file(
+        version, {serialized_mesh<float>(version, 0, 0), serialized_mesh<double>(version, 3, 10),
+                  serialized_mesh<float>(version, 1, 20)});
+    for (int i = 0; i < 3; ++i)
+      EXPECT_EQ(parse_serialized(bytes, "m", i).mesh.positions[0], Vec3(10 * i, 0, 0));
+  }
+}
+
+TEST(Serialized, ComplainsOfWhatIsWrong) {
+  const auto complains = [](const std::string& bytes, const char* message, std::int64_t index = 0) {
+    try {
+      parse_serialized(bytes, "m", index);
+      ADD_FAILURE() << message;
+    } catch (const Error& error) {
+      EXPECT_EQ(error.where().file, "m");
+      EXPECT_NE(std::string(error.what()).find(message), std::string::npos) << error.what();
+    }
+  };
+  const std::string good = serialized_mesh<float>(4, 3);
+  complains("", "ends too early");
+  complains("ply\n", "no mesh in Mitsuba's serialized format");
+  std::string other = good;
+  other[2] = 5;
+  complains(other, "found 5");
+  complains(serialized_file(4, {good}), "but the file holds 1 meshes", 1);
+  complains(good.substr(0, 3) + std::string(1, '\0') + "garbage", "a broken compressed mesh");
+  // Every truncation, but of the checksum and the mark before it, is an error; every flipped byte
+  // is one or gives some other mesh.
+  for (std::size_t n = 0; n < good.size() - 6; ++n) complains(good.substr(0, n), "");
+  for (std::size_t n = 0; n < good.size(); ++n)
+    for (const int bit : {1, 16, 128}) {
+      std::string bad = good;
+      bad[n] = static_cast<char>(bad[n] ^ bit);
+      try {
+        parse_serialized(bad, "m", 0);
+      } catch (const Error&) {
+      }
+    }
 }
 
 }  // namespace

@@ -47,7 +47,8 @@ TEST(Shapes, NormalsUnderMirrorsAndFlips) {
       {"rectangle", "", 0, 1},     {"rectangle", kFlip, 0, -1}, {"rectangle", kMirror, 0, 1},
       {"cube", "", 1, 1},          {"cube", kFlip, 1, -1},      {"cube", kMirror, 1, 1},
       {"sphere", "", 1, 1},        {"sphere", kFlip, 1, -1},    {"sphere", kMirror, 1, -1},
-      {"sphere", negative, 2, -1},
+      {"sphere", negative, 2, -1}, {"disk", "", 0, 1},          {"disk", kFlip, 0, -1},
+      {"disk", kMirror, 0, 1},     {"disk", negative, 0, -1},
   };
   for (const Case& c : cases) {
     const Surface s = load_shape(folder, c.type, c.properties);
@@ -71,6 +72,29 @@ TEST(Sphere, CenterRadiusAndTransform) {
               R"(<shape type="sphere"><transform name="to_world"><scale x="2"/></transform></shape>)")
           .find("2:22: a sphere's \"to_world\" must scale alike"),
       std::string::npos);
+}
+
+TEST(Cylinder, EndsRadiusAndTransform) {
+  SceneFolder folder;
+  const Surface s = load_shape(folder, "cylinder", R"(<point name="p0" x="0" y="1" z="0"/>
+      <point name="p1" x="0" y="4" z="0"/><float name="radius" value="0.5"/>
+      <transform name="to_world"><scale value="2"/></transform>)");
+  EXPECT_NEAR(s.shape->area(), 2 * kPi * 6, 1e-12);
+  const SurfacePoint x = meet(*s.shape, Vec3(9, 3, 0), Vec3(-1, 0, 0));
+  expect_near(x.position, Vec3(1, 3, 0));
+  expect_near(x.n_g, Vec3(1, 0, 0));
+  EXPECT_NEAR(x.uv.y, 1.0 / 6, 1e-12);
+  const Surface standard = load_shape(folder, "cylinder", kMirror);
+  expect_near(meet(*standard.shape, Vec3(9, 0, 0.5), Vec3(-1, 0, 0)).n_g, Vec3(1, 0, 0));
+  EXPECT_NEAR(standard.shape->area(), 2 * kPi, 1e-12);
+  const auto complains = [&](const std::string& inside, const char* message) {
+    const std::string text = folder.error("<shape type=\"cylinder\">" + inside + "</shape>");
+    EXPECT_NE(text.find(message), std::string::npos) << text;
+  };
+  complains(R"(<transform name="to_world"><scale x="2"/></transform>)",
+            "stretch it along its axis");
+  complains(R"(<point name="p1" x="0" y="0" z="0"/>)", "two different finite ends");
+  complains(R"(<float name="radius" value="0"/>)", "must be greater than zero");
 }
 
 /// The columns of a rectangle's transform, read off its corners.
