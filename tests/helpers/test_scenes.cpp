@@ -8,6 +8,7 @@
 #include "core/scene/emitters.h"
 #include "core/scene/sensors.h"
 #include "media/media.h"
+#include "media/mie.h"
 
 namespace fogbow::testing {
 
@@ -247,6 +248,20 @@ SceneDescription smoke_in_glass() {
   return b.done();
 }
 
+/// Every kind of phase function besides Henyey and Greenstein's: a cloud in clear air.
+SceneDescription droplets() {
+  Builder b;
+  const auto air = make_homogeneous_medium(RGB(0.1, 0.15, 0.25), RGB(0.95), make_rayleigh_phase());
+  const auto mist = make_table_phase(Droplets(water_droplets(0.5, 0.2)).table());
+  const auto dust =
+      make_blend_phase(make_tabulated_phase({0.5, 0.2, 0, 0.4, 2}), make_draine(-0.3, 2), 0.3);
+  const auto cloud = make_homogeneous_medium(RGB(2, 1.8, 1.5), RGB(0.95, 0.9, 0.85),
+                                             make_blend_phase(mist, dust, 0.4));
+  b.camera_medium(air).floor(gray()).ceiling_light(0.3, RGB(10));
+  b.bounds(make_cube(Transform::scale(Vec3(0.7))), make_null(), cloud, air);
+  return b.done();
+}
+
 SceneDescription sky_lens() {
   Builder b;
   b.camera(Vec3(0, 0.3, 3), Vec3(0, 0, 0), 45, 0.15).floor(gray());
@@ -281,6 +296,7 @@ const std::vector<TestScene>& test_scenes() {
                                                 {"flame", flame},
                                                 {"patchy-flame", patchy_flame},
                                                 {"smoke-in-glass", smoke_in_glass},
+                                                {"droplets", droplets},
                                                 {"sky-lens", sky_lens},
                                                 {"two-kinds-of-glass", two_kinds_of_glass}};
   return scenes;
