@@ -23,7 +23,7 @@ TEST(Scenes, LoadStrictlyAndSandboxed) {
     EXPECT_NE(scene.content_hash, 0u);
     ++count;
   }
-  EXPECT_GE(count, 9);
+  EXPECT_GE(count, 11);
 }
 
 }  // namespace

@@ -138,6 +138,8 @@ void add_enclosures(std::vector<ClosedForm>& forms) {
   add_room(forms, "enclosure, fog in R and G", scene, {{"fog_sigma_t", "0.5, 0.8, 0"}}, {kGlass},
            {{"path", 40}, {"bdpt", 40}, {"pssmlt", 350}, {"mlt", 6000, kLongOnly}},
            {"light", 1900, kCostly});
+  add_room(forms, "enclosure, smoke", scene, {{"cloud", "smoke"}}, {kGlass},
+           {{"path", 12}, {"bdpt", 24}, {"pssmlt", 140}, {"mlt", 6000, kLongOnly}}, {"light", 950});
   forms.push_back({"enclosure from inside glass",
                    scene,
                    {{"camera", "0.3, -0.4, -0.1"}, {"medium", "milk"}},
@@ -158,6 +160,10 @@ void add_cavities(std::vector<ClosedForm>& forms) {
   add_room(forms, "cavity, cloud only emits", scene,
            {{"cloud_albedo", "0"}, {"cloud_emission", "1"}}, balls,
            {{"path", 5}, {"bdpt", 13}, {"pssmlt", 140}, {"mlt", 6000, kLongOnly}}, {"light", 400});
+  for (const char* cloud : {"smoke", "bricks"})
+    add_room(forms, std::string("cavity, ") + cloud, scene, {{"cloud", cloud}}, balls,
+             {{"path", 5}, {"bdpt", 13}, {"pssmlt", 140}, {"mlt", 6000, kLongOnly}},
+             {"light", 420});
   forms.push_back({"cavity from inside glass",
                    scene,
                    {{"camera", "0.3, -0.4, -0.1"}, {"medium", "tinted"}},
