@@ -96,24 +96,39 @@ std::shared_ptr<const PhaseFunction> mie(Properties& p) {
   return compact ? make_fitted_phase(fit_phase(*table)) : table;
 }
 
+struct Coefficients {
+  RGB sigma_t, albedo;
+};
+
+/// As Mitsuba 0.6 wrote them, or 3.
+Coefficients coefficients(Properties& p) {
+  if (!p.has("sigma_s") && !p.has("sigma_a"))
+    return {p.color("sigma_t", RGB(1)), p.color("albedo", RGB(0.75), 1)};
+  const char* first = p.has("sigma_s") ? "sigma_s" : "sigma_a";
+  if (!p.has("sigma_s") || !p.has("sigma_a") || p.has("sigma_t") || p.has("albedo"))
+    p.fail(first, "give either \"sigma_t\" and \"albedo\", or \"sigma_s\" and \"sigma_a\"");
+  const RGB sigma_s = p.color("sigma_s", RGB(0)), sigma_t = sigma_s + p.color("sigma_a", RGB(0));
+  RGB albedo(0);
+  for (int c = 0; c < 3; ++c)
+    if (sigma_t[c] > 0) albedo[c] = sigma_s[c] / sigma_t[c];
+  return {sigma_t, albedo};
+}
+
 /// `scale` multiplies sigma_t alone. `emission` is ours (Mitsuba 3.9.1 has none): emitted radiance
 /// per unit length, not scaled.
 std::shared_ptr<const Medium> homogeneous(Properties& p) {
-  for (const char* absent : {"material", "sigma_s", "sigma_a"})
-    if (p.has(absent))
-      p.fail(absent, std::string("\"") + absent +
-                         "\" is not supported yet: give \"sigma_t\" and \"albedo\"");
+  if (p.has("material"))
+    p.fail("material", "\"material\" is not supported yet: give \"sigma_t\" and \"albedo\"");
   const double scale = p.number("scale", 1);
   if (!(scale >= 0)) p.fail("scale", "\"scale\" must not be negative");
-  const RGB sigma_t = scale * p.color("sigma_t", RGB(1));
-  const RGB albedo = p.color("albedo", RGB(0.75), 1);
+  const auto [sigma_t, albedo] = coefficients(p);
   const RGB emission = p.color("emission", RGB(0));
   // How Mitsuba samples; it changes no picture.
   p.boolean("sample_emitters", true);
   p.boolean("has_spectral_extinction", true);
   auto phase = p.take_one<PhaseFunction>();
   if (!phase) phase = make_isotropic_phase();
-  return make_homogeneous_medium(sigma_t, albedo, std::move(phase), emission, p.id());
+  return make_homogeneous_medium(scale * sigma_t, albedo, std::move(phase), emission, p.id());
 }
 
 /// A nested volume, or a colour that is the same everywhere.

@@ -43,8 +43,10 @@ std::uint64_t PathSample::key() const {
     in_medium |= std::uint64_t{path_[i].in_medium()} << i;
     if (i < path_.last()) attenuated |= std::uint64_t{path_.sees_medium(i)} << i;
   }
-  const auto ends =
-      static_cast<std::uint64_t>(path_.size()) | static_cast<std::uint64_t>(path_[0].kind) << 8;
+  // Of lights at infinity, some are run into and some are not.
+  const auto ends = static_cast<std::uint64_t>(path_.size()) |
+                    static_cast<std::uint64_t>(path_[0].kind) << 8 |
+                    std::uint64_t{hittable(*scene_, path_[0])} << 12;
   return ends << 4 * kBits | attenuated << 3 * kBits | in_medium << 2 * kBits | glossy << kBits |
          degenerate;
 }

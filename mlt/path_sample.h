@@ -38,7 +38,8 @@ class PathSample {
   bool settle();
   double log_f_star() const { return log_f_star_; }
   const Vec2& raster() const { return path_.raster(); }
-  /// k, the kinds of vertices and which edges lead through sampled media; 0 for long paths.
+  /// k, the kinds of vertices, whether rays run into x₁ and which edges lead through sampled media;
+  /// 0 for long paths.
   std::uint64_t selection_key() const { return selection_key_; }
   /// One, of f but for a power of two.
   std::span<const Contribution> contributions() const { return {&contribution_, 1}; }

@@ -48,6 +48,7 @@ void print_emitters(const Scene& scene) {
   for (std::size_t i = 0; i < scene.emitter_count(); ++i) switch (scene.emitter(i).kind()) {
       case EmitterKind::Area: ++kinds["area"]; break;
       case EmitterKind::Point: ++kinds["point"]; break;
+      case EmitterKind::Directional: ++kinds["directional"]; break;
       case EmitterKind::Infinite: ++kinds["infinite"]; break;
       case EmitterKind::Volume: ++kinds["volume"]; break;
     }

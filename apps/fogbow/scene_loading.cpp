@@ -2,6 +2,7 @@
 #include "apps/fogbow/scene_loading.h"
 
 #include "apps/fogbow/console.h"
+#include "core/image/image_io.h"
 #include "core/scene_io/load.h"
 #include "media/registry.h"
 
@@ -13,6 +14,7 @@ std::unique_ptr<const Scene> load_scene(const SceneArguments& arguments) {
   options.size = arguments.size;
   options.crop = arguments.crop;
   options.sandbox_paths = arguments.sandbox_paths;
+  options.read_image = read_image;
   std::vector<std::string> warnings;
   SceneDescription description =
       load_mitsuba_xml(arguments.path, builtin_media(), options, warnings);

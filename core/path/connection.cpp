@@ -47,10 +47,7 @@ std::optional<Connection> join(const Scene& scene, const Subpath& light, int s, 
   const SubpathVertex& y = light[s - 1];
   const SubpathVertex& z = eye[t - 1];
   if (!y.connects || !z.connects || z.x.infinite()) return std::nullopt;
-  // A point light in a pinhole's view is a point of the picture; by convention it is not seen.
-  if (y.x.kind == VertexKind::PointLight && z.x.kind == VertexKind::Sensor &&
-      scene.sensor().dirac_position())
-    return std::nullopt;
+  if (s == 1 && z.x.kind == VertexKind::Sensor && is_unseen(scene, y.x)) return std::nullopt;
 
   // Cheap factors first: most pairs fail on them, before a ray is traced.
   const Vec3 w = y.x.infinite() ? y.x.point.n_g : normalize(z.x.position() - y.x.position());

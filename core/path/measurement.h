@@ -92,7 +92,7 @@ double pdf_emission(const Scene& scene, const Vertex& x, const Vertex& y, const 
 /// x₁ as its emitter sees it.
 EmitterPoint emitter_point(const Vertex& x);
 /// Density in μ of choosing this emitter and this position on it (dσ of the direction for infinite
-/// lights).
+/// lights, 1 where it is Dirac).
 double pdf_emitter_position(const Scene& scene, const Vertex& x);
 
 }  // namespace fogbow

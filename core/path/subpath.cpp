@@ -9,6 +9,7 @@ VertexKind vertex_kind(EmitterKind kind) {
   switch (kind) {
     case EmitterKind::Area: return VertexKind::Surface;
     case EmitterKind::Point: return VertexKind::PointLight;
+    case EmitterKind::Directional:
     case EmitterKind::Infinite: return VertexKind::InfiniteLight;
     case EmitterKind::Volume: return VertexKind::Medium;
   }

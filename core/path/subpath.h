@@ -94,7 +94,13 @@ double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, 
 
 /// Whether a path may end at x₁ by running into it.
 inline bool hittable(const Scene& scene, const Vertex& x) {
-  return x.emitter >= 0 && scene.emitter(x.emitter).kind() != EmitterKind::Point;
+  return x.emitter >= 0 && !is_dirac(scene.emitter(x.emitter).kind());
+}
+
+/// A light with a Dirac position or direction is a point of a pinhole's picture; by convention it
+/// is not seen directly.
+inline bool is_unseen(const Scene& scene, const Vertex& x) {
+  return scene.sensor().dirac_position() && is_dirac(scene.emitter(x.emitter).kind());
 }
 
 /// Whether light from x₁ that reaches the eye directly or by degenerate vertices alone is "seen

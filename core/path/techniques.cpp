@@ -7,9 +7,7 @@ bool joinable(const Scene& scene, const MeasuredPath& path, int split) {
   if (split >= path.size()) return false;  // nothing runs into the sensor
   if (split == 0) return hittable(scene, path[0]);
   if (path[split - 1].degenerate || path[split].degenerate) return false;
-  // By convention a pinhole does not see a point light (connection.cpp).
-  return path.size() > 2 || path[0].kind != VertexKind::PointLight ||
-         !scene.sensor().dirac_position();
+  return path.size() > 2 || !is_unseen(scene, path[0]);
 }
 
 void choose_infinite_emitter(const Scene& scene, Vertex& x, Rng& rng) {

@@ -9,7 +9,8 @@ enum class VertexKind : std::uint8_t {
   Surface,        ///< on 𝓜: c_i = 0, measure dA
   Medium,         ///< in Ω°: c_i = 1, measure dV
   PointLight,     ///< Dirac position, counting measure, D = 1
-  InfiniteLight,  ///< a direction, measure dσ; `point.n_g` is where its light travels
+  InfiniteLight,  ///< a direction, measure dσ, or counting where it is Dirac; `point.n_g` is where
+                  ///< its light travels
   Sensor,         ///< on the aperture (dA), or a pinhole (counting measure)
 };
 

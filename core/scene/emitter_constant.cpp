@@ -1,15 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
-#include "core/math/frame.h"
 #include "core/math/warp.h"
 #include "core/scene/emitter_radiance.h"
 #include "core/scene/emitters.h"
-#include "core/util/check.h"
+#include "core/scene/parallel_light.h"
 
 namespace fogbow {
 namespace {
-
-/// Origins lie this many scene radii before the disk's plane through the scene's centre.
-constexpr double kStandOff = 2;
 
 class ConstantEmitter final : public Emitter {
  public:
@@ -17,17 +13,13 @@ class ConstantEmitter final : public Emitter {
 
   EmitterKind kind() const override { return EmitterKind::Infinite; }
   void bind(const Vec3& scene_center, double scene_radius) override {
-    FOGBOW_CHECK(is_finite(scene_center) && scene_radius > 0 && std::isfinite(scene_radius));
-    center_ = scene_center;
-    radius_ = scene_radius;
+    beam_.bind(scene_center, scene_radius);
   }
   /// Flux through the scene's disk from all directions.
-  RGB power() const override { return 4 * kPi * kPi * sqr(radius_) * radiance_; }
+  RGB power() const override { return 4 * kPi * beam_.area() * radiance_; }
 
   std::optional<EmitterPoint> sample_position(const Vec3& u) const override {
-    EmitterPoint x;
-    x.surface.n_g = warp::sample_sphere(Vec2(u));
-    x.surface.position = center_ - kStandOff * radius_ * x.surface.n_g;
+    EmitterPoint x = beam_.point(warp::sample_sphere(Vec2(u)));
     x.pdf_position = warp::pdf_sphere();
     return x;
   }
@@ -37,27 +29,19 @@ class ConstantEmitter final : public Emitter {
   }
 
   EmitterDirection sample_direction(const EmitterPoint& x, const Vec2& u) const override {
-    const Frame frame(x.surface.n_g);
-    const Vec2 p = radius_ * warp::sample_disk(u);
-    return {frame.n, center_ + frame.to_world(Vec3(p, -kStandOff * radius_)), density()};
+    return beam_.sample(x, u);
   }
-  double pdf_direction(const EmitterPoint&, const Vec3&) const override { return density(); }
-  /// Any point of the ray will do as its origin.
+  double pdf_direction(const EmitterPoint&, const Vec3&) const override { return beam_.pdf(); }
   std::optional<Vec2> invert_direction(const EmitterPoint& x,
                                        const EmitterDirection& d) const override {
-    const Vec2 p = Vec2(Frame(x.surface.n_g).to_local(d.origin - center_)) / radius_;
-    if (!(dot(p, p) <= 1)) return std::nullopt;
-    return warp::invert_disk(p);
+    return beam_.invert(x, d);
   }
 
   RGB L_e(const EmitterPoint&, const Vec3&) const override { return radiance_; }
 
  private:
-  double density() const { return kInvPi / sqr(radius_); }
-
   RGB radiance_;
-  Vec3 center_{0};
-  double radius_ = 0;
+  ParallelLight beam_;
 };
 
 }  // namespace

@@ -28,6 +28,7 @@ struct Property {
   };
   struct Color {
     RGB c;
+    bool measured = false;  ///< of a spectrum: what is brighter than the range allows is cut
   };
   using Value =
       std::variant<bool, std::int64_t, double, std::string, Point, Vector, Color, Transform>;
@@ -135,7 +136,7 @@ class Properties {
     if (!p) return fallback;
     RGB result;
     if (const auto* c = std::get_if<Property::Color>(&p->value))
-      result = c->c;
+      result = c->measured ? glm::min(c->c, RGB(max)) : c->c;
     else if (std::holds_alternative<double>(p->value) ||
              std::holds_alternative<std::int64_t>(p->value))
       result = RGB(number(name, 0));
@@ -157,6 +158,15 @@ class Properties {
   Transform transform(const std::string& name) {
     const Property* p = use(name);
     return p ? get<Transform>(*p, "transform") : Transform();
+  }
+
+  /// Lets another transform follow the one of this name.
+  void append_transform(const std::string& name, const Transform& after) {
+    auto* p = const_cast<Property*>(lookup(name));
+    if (p)
+      p->value = after * get<Transform>(*p, "transform");
+    else
+      add(Property{name, after, where_, false});
   }
 
   /// All nested objects of one class, in the order of the file.

@@ -239,8 +239,10 @@ void Scene::locate_emitters() {
   for (std::size_t i = 0; i < emitters_.size(); ++i)
     if (const auto p = point_light_position(*emitters_[i]))
       medium_around_emitter_[i] = medium_at(*p);
-  for (const int i : infinite_emitters_)
-    medium_around_emitter_[i] = medium_at(bounds_.center() + 4 * radius_ * spread_direction(0, 1));
+  for (std::size_t i = 0; i < emitters_.size(); ++i)
+    if (at_infinity(emitters_[i]->kind()))
+      medium_around_emitter_[i] =
+          medium_at(bounds_.center() + 4 * radius_ * spread_direction(0, 1));
 }
 
 void Scene::drop_infinite_emitters_in_fog() {
@@ -253,9 +255,8 @@ void Scene::drop_infinite_emitters_in_fog() {
     const Medium* medium = medium_at(out.o);
     if (!medium || max_component(glm::exp(-medium->optical_depth(out, 0, kInfinity))) > 0) return;
   }
-  const std::size_t dropped = std::erase_if(description_.emitters, [](const auto& emitter) {
-    return emitter->kind() == EmitterKind::Infinite;
-  });
+  const std::size_t dropped = std::erase_if(
+      description_.emitters, [](const auto& emitter) { return at_infinity(emitter->kind()); });
   if (dropped > 0)
     warn(
         "the scene lies in unbounded fog: emitters at infinity contribute nothing and are left "

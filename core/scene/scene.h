@@ -82,8 +82,8 @@ class Scene {
   std::size_t emitter_count() const { return emitters_.size(); }
   const Emitter& emitter(std::size_t i) const { return *emitters_[i]; }
   const DiscreteDistribution& emitter_distribution() const { return emitter_distribution_; }
-  /// The medium around a point of an emitter that lies on no medium boundary; for infinite emitters
-  /// the one beyond the scene.
+  /// The medium around a point of an emitter that lies on no medium boundary; for emitters at
+  /// infinity the one beyond the scene.
   const Medium* medium_around_emitter(int emitter, const Vec3& p, PrimitiveId on) const {
     const auto& known = medium_around_emitter_[emitter];
     return known ? *known : medium_at(p, on);
@@ -92,6 +92,7 @@ class Scene {
   /// emit.
   int emitter_of_surface(std::uint32_t shape) const { return emitter_of_surface_[shape]; }
   int emitter_of_medium(const Medium* medium) const;
+  /// Those at infinity that rays run into.
   const std::vector<int>& infinite_emitters() const { return infinite_emitters_; }
 
   Bounds bounds() const { return bounds_; }

@@ -13,6 +13,7 @@
 #include "core/scene/volume.h"
 #include "core/scene_io/content_hash.h"
 #include "core/scene_io/files.h"
+#include "core/scene_io/load.h"
 
 namespace fogbow {
 
@@ -29,11 +30,17 @@ struct FileContext {
 };
 
 using ShapeContext = FileContext;
+/// What emitters need: files, whose bytes go into the hash, and a reader of pictures.
+struct EmitterContext {
+  const FileResolver& files;
+  ContentHash& hash;
+  const ImageReader& read_image;
+};
 
 const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins();
 const PluginTable<std::shared_ptr<const Bsdf>(Properties&)>& bsdf_plugins();
 /// Emitters that stand alone; "area" needs a shape.
-const PluginTable<std::shared_ptr<Emitter>(Properties&)>& emitter_plugins();
+const PluginTable<std::shared_ptr<Emitter>(Properties&, const EmitterContext&)>& emitter_plugins();
 const PluginTable<std::shared_ptr<Emitter>(Properties&, std::shared_ptr<const Shape>)>&
 surface_emitter_plugins();
 const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)>&

@@ -6,6 +6,7 @@
 
 #include "core/math/frame.h"
 #include "core/scene_io/parse_values.h"
+#include "core/scene_io/spectrum.h"
 
 namespace fogbow {
 
@@ -111,18 +112,44 @@ Transform read_transform(const XmlNode& node, Diagnostics& diagnostics) {
   return result;
 }
 
-RGB read_spectrum(const XmlNode& node) {
-  if (node.attribute("filename"))
-    throw Error(ErrorKind::Scene, node.where("filename"),
-                "measured spectra are not supported yet; use <rgb>");
-  const std::string& text = node.required("value");
-  if (text.find(':') != std::string::npos)
-    throw Error(ErrorKind::Scene, node.where("value"),
-                "measured spectra are not supported yet; use <rgb>, or one value");
-  return RGB(parse_number(text, node.where("value")));
+constexpr std::uint64_t kMaxSpectrumBytes = 16 << 20;
+
+/// Colours beyond the screen's have negative parts.
+Property::Color measured(const XmlNode& node, const RGB& color, const ValueContext& context) {
+  if (std::min({color.x, color.y, color.z}) < -1e-4 * max_component(color))
+    context.diagnostics.warn(node.where(), "the spectrum is no colour of sRGB: cut to the nearest");
+  return {glm::max(color, RGB(0)), true};
 }
 
-Property::Value read_value(const XmlNode& node, Diagnostics& diagnostics) {
+Property::Color read_spectrum(const XmlNode& node, const ValueContext& context) {
+  if (const std::string* name = node.attribute("filename")) {
+    const SourceLocation where = node.where("filename");
+    const auto file = context.files.resolve(*name, where);
+    const std::string text = read_file(file, kMaxSpectrumBytes, where);
+    return measured(node, spectrum_to_rgb(parse_spd(text, file.string()), context.emission),
+                    context);
+  }
+  const std::string& text = node.required("value");
+  const SourceLocation where = node.where("value");
+  if (text.find(':') != std::string::npos)
+    return measured(node, spectrum_to_rgb(parse_spectrum(text, where), context.emission), context);
+  const double value = parse_number(text, where);
+  return {context.emission ? equal_energy_to_rgb(value) : RGB(value)};
+}
+
+Property::Color read_blackbody(const XmlNode& node, const ValueContext& context) {
+  std::string text = node.required("temperature");
+  const SourceLocation where = node.where("temperature");
+  if (text.ends_with("K") || text.ends_with("k")) text.pop_back();
+  const double temperature = parse_number(text, where);
+  if (!(temperature > 0 && temperature <= 1e9))
+    throw Error(ErrorKind::Scene, where, "a temperature must lie between 0 and 1e9 kelvin");
+  const double scale =
+      node.attribute("scale") ? parse_number(*node.attribute("scale"), node.where("scale")) : 1;
+  return measured(node, scale * blackbody_to_rgb(temperature), context);
+}
+
+Property::Value read_value(const XmlNode& node, const ValueContext& context) {
   const std::string& tag = node.tag;
   const auto value = [&]() -> const std::string& { return node.required("value"); };
   if (tag == "float") return parse_number(value(), node.where("value"));
@@ -132,13 +159,18 @@ Property::Value read_value(const XmlNode& node, Diagnostics& diagnostics) {
   if (tag == "point") return Property::Point{read_triple(node, std::nullopt)};
   if (tag == "vector") return Property::Vector{read_triple(node, std::nullopt)};
   if (tag == "rgb") return Property::Color{parse_triple(value(), node.where("value"))};
-  if (tag == "spectrum") return Property::Color{read_spectrum(node)};
-  return read_transform(node, diagnostics);
+  if (tag == "spectrum") return read_spectrum(node, context);
+  if (tag == "blackbody") return read_blackbody(node, context);
+  return read_transform(node, context.diagnostics);
 }
 
 void check_value_attributes(const XmlNode& node, Diagnostics& diagnostics) {
   if (node.tag == "transform")
     check_attributes(node, {"name"}, diagnostics);
+  else if (node.tag == "blackbody")
+    check_attributes(node, {"name", "temperature", "scale"}, diagnostics);
+  else if (node.tag == "spectrum")
+    check_attributes(node, {"name", "value", "filename"}, diagnostics);
   else if (node.tag == "point" || node.tag == "vector")
     check_attributes(node, {"name", "value", "x", "y", "z"}, diagnostics);
   else
@@ -148,8 +180,9 @@ void check_value_attributes(const XmlNode& node, Diagnostics& diagnostics) {
 }  // namespace
 
 const std::vector<std::string>& value_tags() {
-  static const std::vector<std::string> tags{"float",  "integer", "boolean",  "string",   "point",
-                                             "vector", "rgb",     "spectrum", "transform"};
+  static const std::vector<std::string> tags{"float",     "integer",  "boolean", "string",
+                                             "point",     "vector",   "rgb",     "spectrum",
+                                             "blackbody", "transform"};
   return tags;
 }
 
@@ -157,15 +190,15 @@ bool is_value_tag(const std::string& tag) {
   return std::find(value_tags().begin(), value_tags().end(), tag) != value_tags().end();
 }
 
-Property read_property(const XmlNode& node, Diagnostics& diagnostics) {
+Property read_property(const XmlNode& node, const ValueContext& context) {
   const std::string& name = node.required("name");
   constexpr std::size_t kMaxName = 256;
   if (name.empty() || name.size() > kMaxName)
     throw Error(ErrorKind::Scene, node.where("name"),
                 "the name of a property is empty or very long");
   if (node.tag != "transform") reject_children(node);
-  Property::Value value = read_value(node, diagnostics);
-  check_value_attributes(node, diagnostics);
+  Property::Value value = read_value(node, context);
+  check_value_attributes(node, context.diagnostics);
   return {name, std::move(value), node.where(), false};
 }
 

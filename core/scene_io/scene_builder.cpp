@@ -15,6 +15,7 @@ namespace {
 
 constexpr std::size_t kMaxProperties = 256;
 constexpr std::size_t kMaxDepth = 64;
+constexpr std::size_t kMaxInstancedShapes = 1 << 20;
 
 const std::vector<std::string>& object_tags() {
   static const std::vector<std::string> tags{"bsdf",   "emitter", "film",    "integrator",
@@ -56,18 +57,13 @@ auto construct(const Table& table, Properties& p, Arguments&&... arguments) {
   }
 }
 
-void check_version(const XmlNode& root, Diagnostics& diagnostics) {
+void check_version(const XmlNode& root) {
   const std::string& text = root.required("version");
   std::string_view rest = text;
   double version = 0;
   if (!consume_number(rest, version))
     throw Error(ErrorKind::Scene, root.where("version"),
                 "expected a version such as \"3.0.0\", found " + quote(text));
-  if (version < 3)
-    diagnostics.warn(
-        root.where("version"),
-        "version " + quote(text) +
-            " is older than 3: names and defaults that have changed are not upgraded yet");
 }
 
 /// Names of the files themselves say nothing of the scene: their bytes are hashed instead.
@@ -160,7 +156,8 @@ void SceneBuilder::read_child(Object& object, const XmlNode& child) {
     if (object.properties.values().size() >= kMaxProperties)
       throw Error(ErrorKind::Scene, child.where(),
                   "more than " + std::to_string(kMaxProperties) + " properties");
-    object.properties.add(read_property(child, diagnostics_));
+    object.properties.add(read_property(
+        child, ValueContext{diagnostics_, files_, object.properties.kind() == "emitter"}));
     return;
   }
   const bool reference = child.tag == "ref";
@@ -314,11 +311,45 @@ void SceneBuilder::integrator(const XmlNode& node) {
   hash_.add(object.hash.value());
 }
 
-void SceneBuilder::surface(const XmlNode& node) {
+/// Groups are seen through their instances alone.
+void SceneBuilder::shape(const XmlNode& node) {
+  const std::string& type = node.required("type");
+  if (type == "instance")
+    instance(node);
+  else if (type != "shapegroup")
+    surface(node);
+}
+
+/// The shapes of the group once more, in their new place.
+void SceneBuilder::instance(const XmlNode& node) {
+  const Nesting guard(open_, node);
+  Object object = read(node);
+  const Transform to_world = object.properties.transform("to_world");
+  const Child* child = object.take_one("shape");
+  if (!child || child->node->required("type") != "shapegroup")
+    throw Error(ErrorKind::Scene, node.where(), "an instance needs a shape of type \"shapegroup\"");
+  finish(object);
+  hash_.add(object.hash.value());
+  const Nesting group_guard(open_, *child->node);
+  Object group = read(*child->node);
+  for (const Child* member : group.take("shape")) {
+    const std::string& type = member->node->required("type");
+    if (type == "instance" || type == "shapegroup")
+      throw Error(ErrorKind::Scene, member->where, "groups and instances do not stand in groups");
+    if (++instanced_shapes_ > kMaxInstancedShapes)
+      throw Error(ErrorKind::Scene, node.where(),
+                  "instances show more than " + std::to_string(kMaxInstancedShapes) + " shapes");
+    surface(*member->node, &to_world);
+  }
+  finish(group);
+}
+
+void SceneBuilder::surface(const XmlNode& node, const Transform* instance) {
   const Nesting guard(open_, node);
   check_plugin(node);
   Object object = read(node);
   Properties& p = object.properties;
+  if (instance) p.append_transform("to_world", *instance);
   Surface surface;
   surface.id = p.id();
   surface.where = p.where();
@@ -327,7 +358,11 @@ void SceneBuilder::surface(const XmlNode& node) {
   surface.interior = p.take<Medium>("interior");
   surface.exterior = p.take<Medium>("exterior");
   surface.medium_boundary = surface.interior || surface.exterior;
-  if (const Child* child = object.take_one("emitter")) attach_emitter(surface, *child, object.hash);
+  if (const Child* child = object.take_one("emitter")) {
+    if (instance)
+      throw Error(ErrorKind::Scene, child->where, "shapes that emit light cannot be instanced");
+    attach_emitter(surface, *child, object.hash);
+  }
   if (!surface.bsdf) {
     auto& fallback = surface.emitter ? default_emitter_bsdf_ : default_bsdf_;
     if (!fallback) fallback = make_diffuse(RGB(surface.emitter ? 0 : 0.5));
@@ -355,14 +390,15 @@ void SceneBuilder::emitter(const XmlNode& node) {
   if (surface_emitter_plugins().contains(plugin))
     throw Error(ErrorKind::Scene, node.where(),
                 "the emitter " + quote(plugin) + " must stand inside a shape");
-  scene_.emitters.push_back(construct(emitter_plugins(), object.properties));
+  scene_.emitters.push_back(construct(emitter_plugins(), object.properties,
+                                      EmitterContext{files_, object.hash, options_.read_image}));
   finish(object);
   hash_.add(object.hash.value());
 }
 
 void SceneBuilder::top_level(const XmlNode& node) {
   if (node.tag == "shape")
-    surface(node);
+    shape(node);
   else if (node.tag == "sensor")
     sensor(node);
   else if (node.tag == "integrator")
@@ -384,7 +420,7 @@ void SceneBuilder::top_level(const XmlNode& node) {
 SceneDescription SceneBuilder::build() {
   const XmlNode& root = document_.root();
   scene_.title = *root.file;
-  check_version(root, diagnostics_);
+  check_version(root);
   for (const XmlNode& node : root.children) top_level(node);
   // After the shapes, which may refer to emitters defined at top level.
   for (const XmlNode& node : root.children)

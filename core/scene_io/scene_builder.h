@@ -67,7 +67,9 @@ class SceneBuilder {
   void sampler(const XmlNode& node, ContentHash& hash);
   void sensor(const XmlNode& node);
   void integrator(const XmlNode& node);
-  void surface(const XmlNode& node);
+  void shape(const XmlNode& node);
+  void surface(const XmlNode& node, const Transform* instance = nullptr);
+  void instance(const XmlNode& node);
   void attach_emitter(Surface& surface, const Child& child, ContentHash& hash);
   void emitter(const XmlNode& node);
   void top_level(const XmlNode& node);
@@ -85,6 +87,7 @@ class SceneBuilder {
       attached_emitters_;  ///< defined at top level, attached to surfaces by reference
   std::optional<std::string> sample_count_;
   std::shared_ptr<const Bsdf> default_bsdf_, default_emitter_bsdf_;
+  std::size_t instanced_shapes_ = 0;
   bool has_integrator_ = false;
 };
 

@@ -4,6 +4,9 @@
 #include <algorithm>
 #include <system_error>
 
+#include "core/scene_io/parse_values.h"
+#include "core/scene_io/upgrade.h"
+
 namespace fogbow {
 
 namespace fs = std::filesystem;
@@ -70,7 +73,20 @@ XmlNode SceneDocument::load(const fs::path& path, const SourceLocation& where) {
   const std::string text = read_file(path, limits_.bytes - bytes_, where);
   bytes_ += text.size();
   open_files_.push_back(identity);
-  return parse_xml(text, path.string(), limits_, nodes_, diagnostics_);
+  XmlNode source = parse_xml(text, path.string(), limits_, nodes_, diagnostics_);
+  upgrade(source);
+  return source;
+}
+
+/// An included scene may be of another version than the one that includes it.
+void SceneDocument::upgrade(XmlNode& source) {
+  double version = version_.value_or(kFirstVersionOfToday);
+  if (const std::string* text = source.attribute("version"); text && source.tag == "scene") {
+    std::string_view rest = *text;
+    if (!consume_number(rest, version)) return;  // an error that the builder tells
+  }
+  if (!version_) version_ = version;
+  if (version < kFirstVersionOfToday) upgrade_scene(source);
 }
 
 void SceneDocument::expand(XmlNode& source, std::vector<XmlNode>& out) {

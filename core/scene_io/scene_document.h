@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <map>
+#include <optional>
 #include <string>
 #include <vector>
 
@@ -34,6 +35,7 @@ class SceneDocument {
   };
 
   XmlNode load(const std::filesystem::path& path, const SourceLocation& where);
+  void upgrade(XmlNode& source);
   void expand(XmlNode& source, std::vector<XmlNode>& out);
   void include(const XmlNode& node, std::vector<XmlNode>& out);
   void substitute(XmlNode& node);
@@ -50,6 +52,7 @@ class SceneDocument {
   std::size_t nodes_ = 0, substituted_bytes_ = 0;
   std::uint64_t bytes_ = 0;
   int includes_ = 0;
+  std::optional<double> version_;  ///< of the scene, which included parts share
   XmlNode root_;
   std::vector<Alias> aliases_;
   std::map<std::string, const XmlNode*> ids_;

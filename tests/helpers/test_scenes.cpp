@@ -4,6 +4,7 @@
 #include <stdexcept>
 
 #include "core/geometry/shapes.h"
+#include "core/image/image.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/emitters.h"
 #include "core/scene/sensors.h"
@@ -283,6 +284,33 @@ SceneDescription two_kinds_of_glass() {
   return b.done();
 }
 
+/// A coarse sky with a bright patch.
+Image sky() {
+  Image image(6, 4, {"R", "G", "B"});
+  for (int row = 0; row < 4; ++row)
+    for (int column = 0; column < 6; ++column)
+      for (int c = 0; c < 3; ++c)
+        image.at(column, row, c) = 0.1f * static_cast<float>(1 + c + (row < 2 ? column : 0));
+  image.at(2, 1, 0) = image.at(2, 1, 1) = 6;
+  return image;
+}
+
+/// A can of glass under the sun, the sky and a spot light.
+SceneDescription sun_and_can() {
+  Builder b;
+  b.floor(gray());
+  const Transform place = Transform::translate(Vec3(-0.5, -0.35, 0)) *
+                          Transform::rotate(Vec3(1, 0, 0.3), -75) * Transform::scale(Vec3(0.55));
+  b.add(make_cylinder(Vec3(0, 0, -1), Vec3(0, 0, 1), 1, place), make_dielectric(1.5));
+  b.add(make_disk(place * Transform::translate(Vec3(0, 0, 1))), make_dielectric(1.5));
+  b.add(make_disk(place * Transform::translate(Vec3(0, 0, -1)), true), make_dielectric(1.5));
+  b.bounds(sphere(Vec3(0.7, -0.4, 0), 0.5), make_null(), fog(RGB(1.5), RGB(0.9), 0.3), nullptr);
+  b.emitter(make_environment_emitter(sky(), Transform::rotate(Vec3(0, 1, 0), 40)));
+  b.emitter(make_directional_emitter(Vec3(0.4, -1, -0.3), RGB(1.2, 1.1, 0.9)));
+  b.emitter(make_spot_emitter(Vec3(0.5, 1.2, 0.8), Vec3(-0.8, -1.6, -0.8), RGB(6, 5, 7), 35, 20));
+  return b.done();
+}
+
 }  // namespace
 
 const std::vector<TestScene>& test_scenes() {
@@ -298,7 +326,8 @@ const std::vector<TestScene>& test_scenes() {
                                                 {"smoke-in-glass", smoke_in_glass},
                                                 {"droplets", droplets},
                                                 {"sky-lens", sky_lens},
-                                                {"two-kinds-of-glass", two_kinds_of_glass}};
+                                                {"two-kinds-of-glass", two_kinds_of_glass},
+                                                {"sun-and-can", sun_and_can}};
   return scenes;
 }
 

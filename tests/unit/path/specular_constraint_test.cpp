@@ -30,11 +30,20 @@ class Patch {
     const auto corner = [&](double u, double v) {
       return shape.surface_point(x.primitive, {u, v});
     };
+    if (kind_ == PrimitiveKind::Analytic && same_normal(corner(0.1, 0.2), corner(0.1, 0.7))) {
+      // A disk, or a cylinder, whose normals turn around its axis.
+      const SurfacePoint p = corner(0.1, 0.2), q = corner(0.4, 0.2);
+      if (same_normal(p, q))
+        kind_ = PrimitiveKind::Quads;
+      else
+        axis_ = normalize(corner(0.1, 0.7).position - p.position);
+    }
     if (kind_ == PrimitiveKind::Analytic) {
-      const SurfacePoint p = corner(0.1, 0.2), q = corner(0.4, 0.4);
+      const SurfacePoint p = corner(0.1, 0.2), q = corner(0.4, axis_ ? 0.2 : 0.4);
       const Vec3 n = p.n_g - q.n_g;
       signed_radius_ = dot(p.position - q.position, n) / dot(n, n);
       center_ = p.position - signed_radius_ * p.n_g;
+      if (axis_) center_ += dot(x.position - center_, *axis_) * *axis_;
       const Frame across(x.n_g);
       du_ = across.s, dv_ = across.t;
       return;
@@ -52,21 +61,32 @@ class Patch {
   JetVec position(const Jet& u, const Jet& v) const {
     const JetVec moved = constant(x_) + constant(du_) * u + constant(dv_) * v;
     if (kind_ != PrimitiveKind::Analytic) return moved;
-    const JetVec out = moved - constant(center_);
-    return constant(center_) + out.normalized() * Jet(std::abs(signed_radius_));
+    const JetVec out = moved - constant(center_), along = along_axis(out);
+    return constant(center_) + along + (out - along).normalized() * Jet(std::abs(signed_radius_));
   }
   /// Unit shading normal.
   JetVec normal(const Jet& u, const Jet& v) const {
-    if (kind_ == PrimitiveKind::Analytic)
-      return (position(u, v) - constant(center_)) / Jet(signed_radius_);
+    if (kind_ == PrimitiveKind::Analytic) {
+      const JetVec out = position(u, v) - constant(center_);
+      return (out - along_axis(out)) / Jet(signed_radius_);
+    }
     return (constant(normal_) + constant(dn_du_) * u + constant(dn_dv_) * v).normalized();
   }
 
  private:
+  static bool same_normal(const SurfacePoint& p, const SurfacePoint& q) {
+    return length(p.n_g - q.n_g) < 1e-9;
+  }
+  JetVec along_axis(const JetVec& out) const {
+    if (!axis_) return JetVec(Jet(0.0), Jet(0.0), Jet(0.0));
+    return constant(*axis_) * out.dot(constant(*axis_));
+  }
+
   Vec3 x_;
   PrimitiveKind kind_;
   Vec3 du_{0}, dv_{0}, normal_{0}, dn_du_{0}, dn_dv_{0};
   Vec3 center_{0};
+  std::optional<Vec3> axis_;  ///< of a cylinder
   double signed_radius_ = 0;
 };
 
@@ -240,7 +260,7 @@ INSTANTIATE_TEST_SUITE_P(
     ::testing::Values(Case{"glass-sphere-fog", 4, false, true}, Case{"mirror-fog", 1, false, false},
                       Case{"water", 2, false, true}, Case{"fog-in-glass", 3, false, true},
                       Case{"two-kinds-of-glass", 3, false, true}, Case{"sky-lens", 2, true, true},
-                      Case{"surfaces", 1, true, true}),
+                      Case{"surfaces", 1, true, true}, Case{"sun-and-can", 2, false, true}),
     test_name);
 
 }  // namespace

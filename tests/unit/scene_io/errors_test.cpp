@@ -34,7 +34,7 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
        "2:30: the volume plugin \"vdbvolume\" is not supported; known: \"const\", "},
       {R"(<phase type="sggx"/>)",
        "2:1: the phase plugin \"sggx\" is not supported; known: \"blendphase\", "},
-      {R"(<emitter type="envmap"/>)", "2:1: the emitter plugin \"envmap\" is not supported"},
+      {R"(<emitter type="projector"/>)", "2:1: the emitter plugin \"projector\" is not supported"},
       {R"(<foo/>)", "2:1: unknown element <foo>"},
       {R"(<shap type="sphere"/>)", "2:1: unknown element <shap> (did you mean \"shape\"?)"},
       {R"(<shape type="sphere"><flaot name="radius" value="1"/></shape>)",
@@ -64,10 +64,13 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
        "2:46: expected finite numbers, found \"1, 2, nan\""},
       {R"(<bsdf type="diffuse"><rgb name="reflectance" value="2, 0, 0"/></bsdf>)",
        "2:22: \"reflectance\" must lie between 0 and 1"},
-      {R"(<bsdf type="diffuse"><spectrum name="reflectance" value="400:1, 700:0.5"/></bsdf>)",
-       "2:51: measured spectra are not supported yet"},
-      {R"(<bsdf type="diffuse"><spectrum name="reflectance" filename="a.spd"/></bsdf>)",
-       "2:51: measured spectra are not supported yet"},
+      {R"(<bsdf type="diffuse"><spectrum name="reflectance" value="400:1, 700"/></bsdf>)",
+       "2:51: expected pairs \"wavelength:value\""},
+      {R"(<bsdf type="diffuse"><spectrum name="reflectance" value="500:1, 400:1"/></bsdf>)",
+       "2:51: the wavelengths of a spectrum must increase"},
+      {R"(<bsdf type="diffuse"><spectrum name="reflectance" filename="a.spd"/></bsdf>)", "2:51: "},
+      {R"(<emitter type="point"><blackbody name="intensity" temperature="-1K"/></emitter>)",
+       "2:51: a temperature must lie between"},
       {R"(<emitter type="constant"><rgb name="radiance" value="-1"/></emitter>)",
        "2:26: \"radiance\" must not be negative"},
       {R"(<emitter type="area"/>)", "2:1: the emitter \"area\" must stand inside a shape"},
@@ -148,15 +151,6 @@ TEST(Warnings, NameWhateverHasNoEffect) {
     EXPECT_EQ(text.find(std::string("scene.xml:") + c.message), 0u) << text;
     EXPECT_EQ(folder.kind, ErrorKind::Scene);
   }
-}
-
-TEST(Warnings, SaysThatOldFilesAreReadAsNewOnes) {
-  SceneFolder folder;
-  const auto scene = folder.load_text(
-      R"(<scene version="0.6.0"><sensor type="perspective"/><shape type="sphere"/></scene>)");
-  EXPECT_EQ(scene.surfaces.size(), 1u);
-  ASSERT_EQ(folder.warnings.size(), 1u);
-  EXPECT_NE(folder.warnings[0].find(":1:8: version \"0.6.0\" is older than 3"), std::string::npos);
 }
 
 }  // namespace

@@ -270,5 +270,54 @@ TEST(Surfaces, RememberWhereTheyStand) {
   EXPECT_EQ(scene.title, folder.path("scene.xml").string());
 }
 
+const std::string kGroup = R"(<shape type="shapegroup" id="g">
+  <shape type="sphere"><float name="radius" value="2"/><bsdf type="diffuse" id="b"/>
+    <transform name="to_world"><translate x="1"/></transform></shape>
+  <shape type="disk"><ref id="b"/></shape></shape>)";
+
+std::string instance_of(const std::string& id, const std::string& steps) {
+  return "<shape type=\"instance\"><ref id=\"" + id + "\"/><transform name=\"to_world\">" + steps +
+         "</transform></shape>";
+}
+
+TEST(Instance, IsItsGroupInAnotherPlace) {
+  SceneFolder folder;
+  const std::string turn = R"(<scale value="3"/><rotate z="1" angle="90"/><translate z="5"/>)";
+  const auto scene =
+      folder.load(kGroup + instance_of("g", turn) + instance_of("g", "<translate y=\"9\"/>"));
+  EXPECT_TRUE(folder.warnings.empty());
+  ASSERT_EQ(scene.surfaces.size(), 4u);
+  expect_near(scene.surfaces[0].shape->bounds().center(), Vec3(0, 3, 5));
+  EXPECT_NEAR(scene.surfaces[0].shape->area(), 4 * kPi * 36, 1e-9);
+  EXPECT_NEAR(scene.surfaces[1].shape->area(), 9 * kPi, 1e-12);
+  expect_near(scene.surfaces[2].shape->bounds().center(), Vec3(1, 9, 0));
+  for (const Surface& s : scene.surfaces) EXPECT_EQ(s.bsdf, scene.surfaces[0].bsdf);
+  const auto once = folder.load(kGroup + instance_of("g", turn));
+  EXPECT_NE(once.content_hash, scene.content_hash);
+  EXPECT_NE(folder.load(kGroup + instance_of("g", "")).content_hash, once.content_hash);
+  EXPECT_TRUE(folder.load(kGroup).surfaces.empty());
+}
+
+TEST(Instance, ComplainsOfWhatCannotBeInstanced) {
+  SceneFolder folder;
+  const auto complains = [&](const std::string& body, const char* message) {
+    const std::string text = folder.error(body);
+    EXPECT_NE(text.find(message), std::string::npos) << text;
+  };
+  complains("<shape type=\"instance\"/>", "2:1: an instance needs a shape of type \"shapegroup\"");
+  complains("<shape type=\"sphere\" id=\"s\"/>" + instance_of("s", ""), "needs a shape of type");
+  complains(R"(<shape type="shapegroup" id="g"><shape type="sphere"><emitter type="area"/></shape>
+            </shape>)" +
+                instance_of("g", ""),
+            "2:54: shapes that emit light cannot be instanced");
+  complains(kGroup + "<shape type=\"shapegroup\" id=\"h\">" + instance_of("g", "") + "</shape>" +
+                instance_of("h", ""),
+            "groups and instances do not stand in groups");
+  complains(R"(<shape type="shapegroup" id="g"><shape type="instance"><ref id="g"/></shape>
+            </shape>)" +
+                instance_of("g", ""),
+            "groups and instances do not stand in groups");
+}
+
 }  // namespace
 }  // namespace fogbow

@@ -1,0 +1,58 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/math/frame.h"
+#include "core/scene/emitter_radiance.h"
+#include "core/scene/emitters.h"
+#include "core/scene/parallel_light.h"
+
+namespace fogbow {
+namespace {
+
+class DirectionalEmitter final : public Emitter {
+ public:
+  DirectionalEmitter(const Vec3& direction, const RGB& irradiance)
+      : irradiance_(require_radiance(irradiance)) {
+    if (!is_finite(direction) || !(length(direction) > 0))
+      throw std::domain_error("the direction of light must be finite and not zero");
+    direction_ = normalize(direction);
+  }
+
+  EmitterKind kind() const override { return EmitterKind::Directional; }
+  void bind(const Vec3& scene_center, double scene_radius) override {
+    beam_.bind(scene_center, scene_radius);
+  }
+  RGB power() const override { return beam_.area() * irradiance_; }
+
+  std::optional<EmitterPoint> sample_position(const Vec3&) const override {
+    EmitterPoint x = beam_.point(direction_);
+    x.pdf_position = 1;
+    return x;
+  }
+  double pdf_position(const EmitterPoint&) const override { return 1; }
+  std::optional<Vec3> invert_position(const EmitterPoint&, const Vec3& auxiliary) const override {
+    return auxiliary;
+  }
+
+  EmitterDirection sample_direction(const EmitterPoint& x, const Vec2& u) const override {
+    return beam_.sample(x, u);
+  }
+  double pdf_direction(const EmitterPoint&, const Vec3&) const override { return beam_.pdf(); }
+  std::optional<Vec2> invert_direction(const EmitterPoint& x,
+                                       const EmitterDirection& d) const override {
+    return beam_.invert(x, d);
+  }
+
+  RGB L_e(const EmitterPoint&, const Vec3&) const override { return irradiance_; }
+
+ private:
+  Vec3 direction_;
+  RGB irradiance_;
+  ParallelLight beam_;
+};
+
+}  // namespace
+
+std::shared_ptr<Emitter> make_directional_emitter(const Vec3& direction, const RGB& irradiance) {
+  return std::make_shared<DirectionalEmitter>(direction, irradiance);
+}
+
+}  // namespace fogbow

@@ -1,0 +1,89 @@
+// SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/math/frame.h"
+#include "core/math/warp.h"
+#include "core/scene/emitter_radiance.h"
+#include "core/scene/emitters.h"
+
+namespace fogbow {
+namespace {
+
+/// Directions are uniform in the cone that is lit.
+class SpotEmitter final : public Emitter {
+ public:
+  SpotEmitter(const Vec3& position, const Vec3& axis, const RGB& intensity, double cutoff_degrees,
+              double beam_degrees)
+      : position_(position),
+        intensity_(require_radiance(intensity)),
+        cutoff_(cutoff_degrees * kPi / 180),
+        beam_(beam_degrees * kPi / 180),
+        one_minus_cos_(2 * sqr(std::sin(cutoff_ / 2))) {
+    if (!is_finite(position) || !is_finite(axis) || !(length(axis) > 0))
+      throw std::domain_error("a spot light must be somewhere, and point somewhere");
+    if (!(cutoff_degrees > 0 && cutoff_degrees <= 180))
+      throw std::domain_error("a spot light's cutoff angle must lie between 0 and 180 degrees");
+    if (!(beam_degrees >= 0 && beam_degrees <= cutoff_degrees))
+      throw std::domain_error(
+          "a spot light's beam width must lie between 0 degrees and the cutoff angle");
+    frame_ = Frame(normalize(axis));
+  }
+
+  EmitterKind kind() const override { return EmitterKind::Point; }
+  /// 2π ∫ falloff sinθ dθ: 1 − (sin c − sin b)/(c − b) where it falls.
+  RGB power() const override {
+    const double width = cutoff_ - beam_;
+    // Near enough for a choice among emitters: of a narrow edge one half counts.
+    const double solid_angle = width > 1e-6 ? 1 - (std::sin(cutoff_) - std::sin(beam_)) / width
+                                            : 1 - std::cos(0.5 * (cutoff_ + beam_));
+    return 2 * kPi * solid_angle * intensity_;
+  }
+
+  std::optional<EmitterPoint> sample_position(const Vec3&) const override {
+    EmitterPoint x;
+    x.surface.position = position_;
+    x.pdf_position = 1;
+    return x;
+  }
+  double pdf_position(const EmitterPoint&) const override { return 1; }
+  std::optional<Vec3> invert_position(const EmitterPoint&, const Vec3& auxiliary) const override {
+    return auxiliary;
+  }
+
+  EmitterDirection sample_direction(const EmitterPoint&, const Vec2& u) const override {
+    const Vec3 w = warp::sample_cone(u, one_minus_cos_);
+    return {frame_.to_world(w), position_, 1 / (2 * kPi * one_minus_cos_)};
+  }
+  double pdf_direction(const EmitterPoint&, const Vec3& w) const override {
+    return warp::pdf_cone(frame_.to_local(w), one_minus_cos_);
+  }
+  std::optional<Vec2> invert_direction(const EmitterPoint&,
+                                       const EmitterDirection& d) const override {
+    const Vec3 w = frame_.to_local(d.w);
+    if (!(warp::pdf_cone(w, one_minus_cos_) > 0)) return std::nullopt;
+    return warp::invert_cone(w, one_minus_cos_);
+  }
+
+  /// Full within the beam, from there linear in the angle down to nothing at the cutoff.
+  RGB L_e(const EmitterPoint&, const Vec3& w) const override {
+    const Vec3 local = frame_.to_local(w);
+    const double angle = std::atan2(length(Vec3(local.x, local.y, 0)), local.z);
+    if (angle <= beam_) return intensity_;
+    return angle < cutoff_ ? (cutoff_ - angle) / (cutoff_ - beam_) * intensity_ : RGB(0);
+  }
+
+ private:
+  Vec3 position_;
+  Frame frame_;
+  RGB intensity_;
+  double cutoff_, beam_;
+  double one_minus_cos_;  ///< of the cutoff angle
+};
+
+}  // namespace
+
+std::shared_ptr<Emitter> make_spot_emitter(const Vec3& position, const Vec3& axis,
+                                           const RGB& intensity, double cutoff_degrees,
+                                           double beam_degrees) {
+  return std::make_shared<SpotEmitter>(position, axis, intensity, cutoff_degrees, beam_degrees);
+}
+
+}  // namespace fogbow
