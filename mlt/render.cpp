@@ -11,13 +11,13 @@ namespace fogbow {
 
 namespace {
 
-/// Whether there are paths from Dirac positions on which no two neighbouring vertices scatter
-/// smoothly: no technique samples them.
+/// Whether there are paths from Dirac positions or directions on which no two neighbouring vertices
+/// scatter smoothly: no technique samples them.
 bool has_unreachable_classes(const Scene& scene) {
-  bool point_lights = false;
+  bool dirac_lights = false;
   for (std::size_t i = 0; i < scene.emitter_count(); ++i)
-    point_lights |= scene.emitter(i).kind() == EmitterKind::Point;
-  return point_lights && std::ranges::any_of(scene.surfaces(),
+    dirac_lights |= is_dirac(scene.emitter(i).kind());
+  return dirac_lights && std::ranges::any_of(scene.surfaces(),
                                              [](const Surface& s) { return s.bsdf->has_dirac(); });
 }
 
@@ -32,7 +32,8 @@ void finish(RenderResult& result, const Scene& scene, const Session& session,
   result.notes.insert(result.notes.begin(), settings.notes.begin(), settings.notes.end());
   if (has_unreachable_classes(scene))
     result.notes.push_back(
-        "light from point lights that goes through specular surfaces and is seen through specular "
+        "light from point or directional lights that goes through specular surfaces and is seen "
+        "through specular "
         "surfaces, with no two other vertices next to each other, is not sampled");
   if (!settings.depth_capped || result.lengths.empty()) return;
   const ClassShare& last = result.lengths.back();
@@ -50,6 +51,7 @@ std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettin
   EstimatorSettings s;
   s.max_depth = settings.max_depth;
   s.rr_depth = settings.rr_depth;
+  s.hide_emitters = settings.hide_emitters;
   if (settings.integrator == "path") return make_path_tracer(scene, s);
   if (settings.integrator == "light") return make_light_tracer(scene, s);
   s.seen_light = !settings.uses_chains();

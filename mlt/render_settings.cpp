@@ -46,6 +46,8 @@ bool apply(RenderSettings& settings, const std::string& name, const std::string&
     settings.max_depth = depth == -1 ? kDepthCap : depth;
   } else if (name == "rr_depth" || name == "rrDepth") {
     settings.rr_depth = parse_number<int>(name, value, 0, 1 << 16);
+  } else if (name == "hide_emitters" || name == "hideEmitters") {
+    settings.hide_emitters = parse_boolean(name, value);
   } else if (name == "p_large" || name == "pLarge") {
     settings.large_step_probability = parse_number<double>(name, value, 1e-3, 1);
   } else if (name == "mutations") {
@@ -85,10 +87,11 @@ RenderSettings read_render_settings(const Scene& scene, const RenderOptions& opt
       settings.notes.push_back("integrator property \"" + name + "\" has no effect");
   for (const auto& [name, value] : options.overrides)
     if (!apply(settings, name, value))
-      throw Error(ErrorKind::Usage, "unknown integrator property \"" + name +
-                                        "\", expected max_depth, rr_depth, p_large, "
-                                        "mutations, two_stage, luminance_samples, chains or "
-                                        "sample_count");
+      throw Error(ErrorKind::Usage,
+                  "unknown integrator property \"" + name +
+                      "\", expected max_depth, rr_depth, "
+                      "hide_emitters, p_large, mutations, two_stage, luminance_samples, chains or "
+                      "sample_count");
   return settings;
 }
 

@@ -16,6 +16,7 @@ struct RenderSettings {
   int max_depth = 0;
   bool depth_capped = false;  ///< the scene sets no limit, and ours stands in for it
   int rr_depth = 5;
+  bool hide_emitters = false;
   double large_step_probability = 0.3;                     ///< pssmlt
   MutationWeights mutations = default_mutation_weights();  ///< mlt
   /// Chains share their time for the least relative error, not in proportion to luminance.

@@ -39,6 +39,7 @@ SeenLightPicture::SeenLightPicture(const Scene& scene, const RenderSettings& set
   if (!has_visible_emitters(scene)) return;
   EstimatorSettings s;
   s.max_depth = settings.max_depth;
+  s.hide_emitters = settings.hide_emitters;
   estimator_ = make_seen_light(scene, s);
   const double mean = std::max(b, mean_luminance(*estimator_, seed));
   sampling_.emplace(*estimator_, scene.film(), seed, std::ilogb(mean) + 1 - kFractionBits);

@@ -24,7 +24,7 @@ void add_emission(const Scene& scene, Workspace& w, int t, const Vec2& raster) {
 class Bdpt final : public Estimator {
  public:
   Bdpt(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene), max_vertices_(settings.max_depth + 1), seen_light_(settings.seen_light) {}
+      : scene_(scene), settings_(settings), max_vertices_(settings.max_depth + 1) {}
 
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override {
     w.contributions.clear();
@@ -37,11 +37,13 @@ class Bdpt final : public Estimator {
     bool specular = true;  // all vertices between the first and this
     for (int t = 1; t <= eye_size; ++t) {
       const Vertex& x = w.eye[t - 1].x;
-      const bool left_out = !seen_light_ && specular && is_seen(scene_, x);
+      const bool left_out = (!settings_.seen_light && specular && is_seen(scene_, x)) ||
+                            settings_.hides(scene_, x, t);
       if (x.emitter >= 0 && t >= 2 && !left_out) add_emission(scene_, w, t, raster);
       specular = specular && (t == 1 || x.degenerate);
       for (int s = 1; s <= light_size && s + t <= max_vertices_; ++s) {
-        if (!seen_light_ && s + t == 2 && is_seen(scene_, w.light[0].x)) continue;
+        const bool seen = s + t == 2 && is_seen(scene_, w.light[0].x);
+        if (seen && (!settings_.seen_light || settings_.hide_emitters)) continue;
         const auto c = join(scene_, w.light, s, w.eye, t);
         if (c) w.add({t == 1 ? c->raster : raster, c->weight * c->value, s + t, s, t});
       }
@@ -52,15 +54,15 @@ class Bdpt final : public Estimator {
 
  private:
   const Scene& scene_;
+  EstimatorSettings settings_;
   int max_vertices_;
-  bool seen_light_;
 };
 
 /// Of all techniques that with t = 1, and alone: its weight is one.
 class LightTracer final : public Estimator {
  public:
   LightTracer(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene), max_vertices_(settings.max_depth + 1) {}
+      : scene_(scene), settings_(settings), max_vertices_(settings.max_depth + 1) {}
 
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override {
     w.contributions.clear();
@@ -68,6 +70,7 @@ class LightTracer final : public Estimator {
     trace_eye_subpath(scene_, eye, 1, w.eye, raster);
     trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
     for (int s = 1; s <= static_cast<int>(w.light.size()); ++s) {
+      if (settings_.hides(scene_, w.light[0].x, s + 1)) continue;
       const auto c = join(scene_, w.light, s, w.eye, 1);
       if (c) w.add({c->raster, c->value, s + 1, s, 1});
     }
@@ -77,6 +80,7 @@ class LightTracer final : public Estimator {
 
  private:
   const Scene& scene_;
+  EstimatorSettings settings_;
   int max_vertices_;
 };
 

@@ -50,6 +50,13 @@ struct EstimatorSettings {
   bool null_collisions = false;
   /// bdpt: with the light that make_seen_light() samples.
   bool seen_light = true;
+  /// Without the light that the eye sees directly, through index-matched boundaries included.
+  bool hide_emitters = false;
+
+  /// Whether paths of k vertices from x₁ are left out.
+  bool hides(const Scene& scene, const Vertex& x, int k) const {
+    return hide_emitters && k == 2 && is_seen(scene, x);
+  }
 };
 
 /// Volumetric path tracing: next-event estimation with multiple importance sampling; in media also

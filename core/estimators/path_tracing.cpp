@@ -31,10 +31,7 @@ struct Arrival {
 class PathTracer final : public Estimator {
  public:
   PathTracer(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene),
-        max_vertices_(settings.max_depth + 1),
-        rr_depth_(settings.rr_depth),
-        null_collisions_(settings.null_collisions) {}
+      : scene_(scene), settings_(settings), max_vertices_(settings.max_depth + 1) {}
 
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override;
   const char* name() const override { return "path"; }
@@ -60,7 +57,7 @@ class PathTracer final : public Estimator {
                           SampleStream& u) const;
   /// False where the flight cannot meet a medium: equiangular distances would be wasted on it.
   bool may_scatter(const Flight& flight) const {
-    if (null_collisions_) return false;
+    if (settings_.null_collisions) return false;
     return is_sampled(medium_toward(scene_, flight.x, flight.w)) ||
            (scene_.has_media() && scene_.has_null_surfaces());
   }
@@ -70,8 +67,8 @@ class PathTracer final : public Estimator {
   double share(const Flight& flight, const Arrival& at, const Vertex& light) const;
 
   const Scene& scene_;
-  int max_vertices_, rr_depth_;
-  bool null_collisions_;
+  EstimatorSettings settings_;
+  int max_vertices_;
 };
 
 /// On the whole way through the scene: where the wall is, free flight need not have found out.
@@ -149,7 +146,7 @@ RGB PathTracer::ratio_transmittance(const Vertex& a, const Vertex& b, const Edge
 }
 
 bool PathTracer::arrive(const Flight& flight, SampleStream& eye, Arrival& at) const {
-  if (null_collisions_) return arrive_by_null_collisions(flight, eye, at);
+  if (settings_.null_collisions) return arrive_by_null_collisions(flight, eye, at);
   const ExtendResult result =
       extend(scene_, flight.x, flight.w, eye.next2(), at.y, at.edge, flight.t_min, flight.t_max);
   if (result != ExtendResult::Reached && !make_infinite_vertex(scene_, at.edge, at.y)) return false;
@@ -176,7 +173,7 @@ bool PathTracer::scatter_on(const Arrival& at, SampleStream& eye, Flight& flight
   flight.t_min = 0;
   flight.t_max = kInfinity;
   ++flight.vertices;
-  if (flight.vertices > rr_depth_) {
+  if (flight.vertices > settings_.rr_depth) {
     // The n² of radiance is undone when the ray leaves the glass again: it must not kill the path.
     // No cap below one: where little is absorbed, dividing by it would let throughputs, and their
     // variance, grow with every bounce.
@@ -193,7 +190,7 @@ RGB PathTracer::emission(const Flight& before_previous, const Arrival& previous,
   if (!hittable(scene_, at.y)) return RGB(0);
   const RGB value = at.throughput * L_e(scene_, at.y, -flight.w);
   if (is_black(value) || flight.x.kind == VertexKind::Sensor || flight.x.degenerate) return value;
-  if (null_collisions_) return RGB(0);  // direct() has it
+  if (settings_.null_collisions) return RGB(0);  // direct() has it
   const double pdf_hit = pdf_arrival(at.y, at.edge, flight.pdf_sigma);
   const double pdf_light = pdf_emitter_position(scene_, at.y);
   const double pdf_others = pdf_light * (1 + share(before_previous, previous, at.y));
@@ -210,7 +207,7 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
   if (is_black(s.f_hat)) return std::nullopt;
   auto edge = connect(scene_, light.x, y);
   if (!edge) return std::nullopt;
-  if (null_collisions_) edge->tau = ratio_transmittance(light.x, y, *edge, u);
+  if (settings_.null_collisions) edge->tau = ratio_transmittance(light.x, y, *edge, u);
   const RGB value =
       radiance * geometric_term(scene_, light.x, y, *edge) * edge->tau * s.f_hat / light.pdf;
   double pdf_hit = 0;
@@ -224,7 +221,7 @@ RGB PathTracer::direct(const Flight& flight, const Arrival& at, SampleStream& u)
   if (!connectible(scene_, at.y) || !sample_emitter(scene_, u, light)) return RGB(0);
   const auto seen = see(light, at.y, -flight.w, u);
   if (!seen) return RGB(0);
-  if (null_collisions_) return at.throughput * seen->first;
+  if (settings_.null_collisions) return at.throughput * seen->first;
   const double pdf_both = light.pdf * (1 + share(flight, at, light.x));
   return at.throughput * seen->first * (light.pdf / (pdf_both + seen->second));
 }
@@ -255,6 +252,9 @@ void PathTracer::sample(SampleStream& light, SampleStream& eye, Workspace& w) co
   Vec2 raster;
   if (!leave_sensor(eye, raster, flight)) return;
   const auto add = [&](const RGB& value, int k, int s) { w.add({raster, value, k, s, k - s}); };
+  const auto add_emission = [&](int k) {
+    if (!settings_.hides(scene_, at.y, k)) add(emission(before, previous, flight, at), k, 0);
+  };
   for (;;) {
     const int k = flight.vertices + 1;  // vertices of the path that ends at the next one
     if (k > max_vertices_) return;
@@ -263,11 +263,11 @@ void PathTracer::sample(SampleStream& light, SampleStream& eye, Workspace& w) co
     if (at.y.infinite()) {
       for (const int emitter : scene_.infinite_emitters()) {
         at.y.emitter = emitter;
-        add(emission(before, previous, flight, at), k, 0);
+        add_emission(k);
       }
       return;
     }
-    add(emission(before, previous, flight, at), k, 0);
+    add_emission(k);
     if (k == max_vertices_) return;
     add(direct(flight, at, light), k + 1, 1);
     // Only at a medium vertex is the flight that led there asked for again.

@@ -10,7 +10,7 @@ namespace {
 class SeenLight final : public Estimator {
  public:
   SeenLight(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene), max_vertices_(settings.max_depth + 1) {}
+      : scene_(scene), settings_(settings), max_vertices_(settings.max_depth + 1) {}
   const char* name() const override { return "seen light"; }
 
   void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
@@ -48,7 +48,8 @@ class SeenLight final : public Estimator {
     const ExtendResult result = extend_to_surface(scene_, x, w, next, edge, near, far);
     throughput *= edge.tau;
     if (result != ExtendResult::Reached) return see_sky(way, edge, throughput, k);
-    if (hittable(scene_, next)) way.add(throughput, L_e(scene_, next, -w), k);
+    if (hittable(scene_, next) && !settings_.hides(scene_, next, k))
+      way.add(throughput, L_e(scene_, next, -w), k);
     if (k < max_vertices_) scatter(way, next, -w, throughput, k);
   }
 
@@ -57,7 +58,7 @@ class SeenLight final : public Estimator {
     if (!make_infinite_vertex(scene_, edge, sky)) return;
     for (const int emitter : scene_.infinite_emitters()) {
       sky.emitter = emitter;
-      way.add(throughput, L_e(scene_, sky, -edge.w), k);
+      if (!settings_.hides(scene_, sky, k)) way.add(throughput, L_e(scene_, sky, -edge.w), k);
     }
   }
 
@@ -81,6 +82,7 @@ class SeenLight final : public Estimator {
   }
 
   const Scene& scene_;
+  EstimatorSettings settings_;
   int max_vertices_;
 };
 

@@ -125,6 +125,54 @@ TEST_P(SeenLight, IsWhatTheEyeRunsInto) {
 INSTANTIATE_TEST_SUITE_P(Scenes, SeenLight, ::testing::ValuesIn(test_scenes()),
                          [](const auto& info) { return test_name(info.param); });
 
+/// The same samples, without those of two vertices.
+TEST(HiddenEmitters, AreLeftOutAndNothingElse) {
+  for (const char* name : {"sky-lens", "two-kinds-of-glass", "sun-and-can"}) {
+    const Scene scene(make_test_scene(name));
+    EstimatorSettings settings{.max_depth = 4};
+    EstimatorSettings hiding = settings;
+    hiding.hide_emitters = true;
+    for (const auto make : {make_path_tracer, make_light_tracer, make_bdpt, make_seen_light}) {
+      const auto all = make(scene, settings), hidden = make(scene, hiding);
+      int left_out = 0;
+      Workspace a, b;
+      for (std::uint64_t i = 0; i < 2000; ++i) {
+        for (const auto& [estimator, w] : {std::pair{all.get(), &a}, {hidden.get(), &b}}) {
+          Rng rng(suite_seed(), RngDomain::Test, 97, i);
+          RandomStream stream(rng);
+          estimator->sample(stream, stream, *w);
+        }
+        const std::size_t before = a.contributions.size();
+        std::erase_if(a.contributions, [](const Contribution& c) { return c.k == 2; });
+        left_out += before > a.contributions.size();
+        ASSERT_EQ(a.contributions.size(), b.contributions.size()) << name << all->name();
+        for (std::size_t j = 0; j < a.contributions.size(); ++j) {
+          ASSERT_EQ(a.contributions[j].value, b.contributions[j].value);
+          ASSERT_EQ(a.contributions[j].k, b.contributions[j].k);
+        }
+      }
+      const bool pinhole = scene.sensor().dirac_position();
+      const bool may_see_none = std::string(all->name()) == "light" && pinhole;
+      EXPECT_TRUE(left_out > 0 || may_see_none) << name << ", " << all->name();
+    }
+  }
+}
+
+/// Emission of a medium is no emitter that could be hidden.
+TEST(HiddenEmitters, AreNoFlames) {
+  const Scene scene(make_test_scene("flame"));
+  const auto path = make_path_tracer(scene, {.max_depth = 4, .hide_emitters = true});
+  int seen = 0;
+  Workspace w;
+  for (std::uint64_t i = 0; i < 500; ++i) {
+    Rng rng(suite_seed(), RngDomain::Test, 98, i);
+    RandomStream stream(rng);
+    path->sample(stream, stream, w);
+    for (const Contribution& c : w.contributions) seen += c.k == 2;
+  }
+  EXPECT_GT(seen, 0);
+}
+
 /// Where there is nothing else to see, too.
 TEST(SeenLightAlone, IsRenderedWithoutChains) {
   SceneDescription d = make_test_scene("sky-lens");
