@@ -20,31 +20,28 @@ class Tracker {
 
   /// Over [t0, t1], within the volume's bounds.
   FlightEnd track(double t0, double t1) {
-    // Voxels are far away: those of a block are asked for before the one before is added up.
-    Block blocks[2];
-    int current = 0;
-    bool pending = false;
-    const bool through = tracking_.blocks(t0, t1, [&](const Index& at, double ta, double tb) {
+    // Voxels are far away: those of some blocks are asked for before the first is added up.
+    constexpr unsigned kAhead = 2;
+    Block ring[kAhead];
+    unsigned first = 0, last = 0;  // blocks added up, and found
+    bool goes_on = tracking_.blocks(t0, t1, [&](const Index& at, double ta, double tb) {
       const std::size_t index = tracking_.block_index(at);
       const Volume::BlockKind kind = tracking_.volume().block_kind(index);
       if (kind == Volume::BlockKind::Empty) return true;
-      Block& next = blocks[current ^ 1];
+      if (last - first == kAhead && !add(ring[first++ % kAhead])) return false;
+      Block& next = ring[last++ % kAhead];
       next.index = index;
       next.ta = ta;
       next.tb = tb;
       next.steps.clear();
       if (kind == Volume::BlockKind::Varying)
         tracking_.cells(at, ta, tb, [&](const Index& cell, double a, double b) {
-          next.steps.push_back({cell, a, b});
-          prefetch(tracking_.volume(), cell);
+          next.steps.template add<kFilter>(tracking_.volume(), cell, a, b);
           return true;
         });
-      const bool goes_on = !pending || add(blocks[current]);
-      current ^= 1;
-      pending = true;
-      return goes_on;
+      return true;
     });
-    if (through && pending) add(blocks[current]);
+    while (goes_on && first != last) goes_on = add(ring[first++ % kAhead]);
     if (kChannels == 1) end_.depth = RGB(end_.depth.x);
     return end_;
   }
@@ -76,18 +73,18 @@ class Tracker {
   bool add_cell(const CellStep& step) {
     RGB part(0);
     for (int c = 0; c < kChannels; ++c)
-      part[c] = CellDensity<kFilter>(tracking_, step.index, c).integral(step.ta, step.tb);
+      part[c] = CellDensity<kFilter>(tracking_, step, c).integral(step.ta, step.tb);
     if (end_.depth[channel_] + part[channel_] > target_) return end_in_cell(step);
     end_.depth += part;
     return true;
   }
 
   bool end_in_cell(const CellStep& step) {
-    const CellDensity<kFilter> density(tracking_, step.index, channel_);
+    const CellDensity<kFilter> density(tracking_, step, channel_);
     const double t = density.invert(step.ta, step.tb, target_ - end_.depth[channel_]);
     RGB part(0);
     for (int c = 0; c < kChannels; ++c)
-      part[c] = CellDensity<kFilter>(tracking_, step.index, c).integral(step.ta, t);
+      part[c] = CellDensity<kFilter>(tracking_, step, c).integral(step.ta, t);
     return stop(t, part);
   }
 

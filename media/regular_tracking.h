@@ -15,7 +15,12 @@ class RegularTracking {
   RegularTracking(const Volume& volume, const Ray& ray)
       : volume_(volume), ray_(ray), o_(volume.lattice_point(ray.o)) {
     d_ = volume.lattice_vector(ray.d);
-    inverse_ = 1.0 / d_;
+    for (int axis = 0; axis < 3; ++axis) {
+      up_[axis] = d_[axis] > 0;
+      inverse_[axis] = d_[axis] == 0 ? 0 : 1 / d_[axis];
+      never_[axis] = d_[axis] == 0 ? kInfinity : 0;
+    }
+    curvature_ = Vec3(d_.y * d_.z, d_.x * d_.z, d_.x * d_.y) / 12.0;
   }
 
   /// The part of [t0, t1] within the volume's bounds; false where there is none.
@@ -48,6 +53,8 @@ class RegularTracking {
   }
 
   const Volume& volume() const { return volume_; }
+  /// d_y d_z, d_x d_z and d_x d_y, over twelve.
+  const Vec3& curvature() const { return curvature_; }
   std::size_t block_index(const Index& b) const { return volume_.block_index(b[0], b[1], b[2]); }
   /// Lattice coordinates at t within a cell.
   Vec3 local(const Index& cell, double t) const {
@@ -58,11 +65,12 @@ class RegularTracking {
   /// Cubes of a side of kSide cells, of which `count` lie side by side from cell `first`.
   template <int kSide, class Visit>
   bool traverse(const Index& first, const Index& count, double t0, double t1, Visit&& visit) const {
-    Index i;
+    Index i, beyond;
     double next[3];
     for (int axis = 0; axis < 3; ++axis) {
       const double at = o_[axis] + t0 * d_[axis] - first[axis];
       i[axis] = std::clamp(static_cast<int>(std::floor(at / kSide)), 0, count[axis] - 1);
+      beyond[axis] = up_[axis] ? count[axis] : -1;
       next[axis] = plane<kSide>(axis, first[axis], i[axis]);
     }
     for (double ta = t0;;) {
@@ -72,8 +80,8 @@ class RegularTracking {
       const double tb = std::min(std::max(next[axis], ta), t1);
       if (!visit(i, ta, tb)) return false;
       if (!(tb < t1)) return true;
-      i[axis] += d_[axis] > 0 ? 1 : -1;
-      if (i[axis] < 0 || i[axis] >= count[axis]) return true;
+      i[axis] += 2 * up_[axis] - 1;
+      if (i[axis] == beyond[axis]) return true;
       next[axis] = plane<kSide>(axis, first[axis], i[axis]);
       ta = tb;
     }
@@ -82,62 +90,64 @@ class RegularTracking {
   /// Where the ray leaves cube i of an axis. The same plane has the same distance whoever asks.
   template <int kSide>
   double plane(int axis, int first, int i) const {
-    if (d_[axis] == 0) return kInfinity;
-    return (first + (i + (d_[axis] > 0 ? 1 : 0)) * kSide - o_[axis]) * inverse_[axis];
+    return (first + (i + up_[axis]) * kSide - o_[axis]) * inverse_[axis] + never_[axis];
   }
 
   const Volume& volume_;
   const Ray& ray_;
-  Vec3 o_, d_, inverse_;
+  Vec3 o_, d_, inverse_, curvature_;
+  Vec3 never_;  ///< infinite where no plane of the axis is ever met
+  Index up_;    ///< 1 where cells are passed upwards, else 0
 };
 
-/// The part of a ray in one cell.
+/// The part of a ray in one cell, and where the cell's corners are.
 struct CellStep {
-  RegularTracking::Index index;
+  RegularTracking::Index cell;
   double ta, tb;
+  std::uint32_t corners[8];  ///< the first alone where values are those of the nearest voxel
 };
 
-/// All of them in one block: a ray leaves a cell through one of the planes in the block.
+/// All of them in one block: a ray leaves each cell but the last through one of the block's inner
+/// planes.
 class CellSteps {
  public:
   bool empty() const { return size_ == 0; }
-  void clear() { size_ = 0; }
-  void push_back(const CellStep& step) { steps_[size_++] = step; }
   const CellStep* begin() const { return steps_; }
   const CellStep* end() const { return steps_ + size_; }
+
+  void clear() { size_ = 0; }
+  /// Also asks the memory for the corners, which are far away.
+  template <VolumeFilter kFilter>
+  void add(const Volume& volume, const RegularTracking::Index& cell, double ta, double tb) {
+    CellStep& step = steps_[size_++];
+    step.cell = cell;
+    step.ta = ta;
+    step.tb = tb;
+    const std::uint32_t* x = volume.offsets(0) + cell[0];
+    const std::uint32_t* y = volume.offsets(1) + cell[1];
+    const std::uint32_t* z = volume.offsets(2) + cell[2];
+    for (int i = 0; i < (kFilter == VolumeFilter::Trilinear ? 8 : 1); ++i) {
+      step.corners[i] = x[i & 1] + y[i >> 1 & 1] + z[i >> 2];
+#ifdef __GNUC__
+      __builtin_prefetch(volume.voxels() + step.corners[i]);
+#endif
+    }
+  }
 
  private:
   int size_ = 0;
   CellStep steps_[3 * Volume::kBlock];
 };
 
-/// Asks for the corners of a cell.
-inline void prefetch(const Volume& volume, const RegularTracking::Index& cell) {
-#ifdef __GNUC__
-  const std::uint32_t* x = volume.offsets(0) + cell[0];
-  const std::uint32_t* y = volume.offsets(1) + cell[1];
-  const std::uint32_t* z = volume.offsets(2) + cell[2];
-  for (int i = 0; i < 8; ++i)
-    __builtin_prefetch(volume.voxels() + x[i & 1] + y[i >> 1 & 1] + z[i >> 2]);
-#endif
-}
-
 /// One channel of the field in one cell, along the ray.
 template <VolumeFilter kFilter>
 class CellDensity {
  public:
-  CellDensity(const RegularTracking& tracking, const RegularTracking::Index& cell, int channel)
-      : tracking_(tracking), cell_(cell) {
-    const Volume& volume = tracking.volume();
-    const float* voxels = volume.voxels() + channel;
-    const std::uint32_t* x = volume.offsets(0) + cell[0];
-    const std::uint32_t* y = volume.offsets(1) + cell[1];
-    const std::uint32_t* z = volume.offsets(2) + cell[2];
-    if constexpr (kFilter == VolumeFilter::Nearest) {
-      v_[0] = voxels[x[0] + y[0] + z[0]];
-    } else {
-      for (int i = 0; i < 8; ++i) v_[i] = voxels[x[i & 1] + y[i >> 1 & 1] + z[i >> 2]];
-    }
+  CellDensity(const RegularTracking& tracking, const CellStep& step, int channel)
+      : tracking_(tracking), cell_(step.cell) {
+    const float* voxels = tracking.volume().voxels() + channel;
+    constexpr int kCorners = kFilter == VolumeFilter::Trilinear ? 8 : 1;
+    for (int i = 0; i < kCorners; ++i) v_[i] = voxels[step.corners[i]];
   }
 
   double operator()(double t) const {
@@ -147,13 +157,20 @@ class CellDensity {
   }
 
   /// Over [ta, tb]. A trilinear field is a cubic along the ray, which two-point Gauss quadrature
-  /// integrates exactly.
+  /// integrates exactly: its nodes at m ± h/√12 see the value at the middle m and, beyond it, the
+  /// second derivative alone, which is that of the products xy, xz and yz.
   double integral(double ta, double tb) const {
     const double length = tb - ta;
     if constexpr (kFilter == VolumeFilter::Nearest) return v_[0] * length;
-    constexpr double kNode = 0.28867513459481288;  // √3/6
-    const double middle = 0.5 * (ta + tb), offset = kNode * length;
-    return std::max(0.5 * length * ((*this)(middle - offset) + (*this)(middle + offset)), 0.0);
+    const Vec3 p = tracking_.local(cell_, 0.5 * (ta + tb)), &k = tracking_.curvature();
+    const double x0 = v_[1] - v_[0], x1 = v_[3] - v_[2], x2 = v_[5] - v_[4], x3 = v_[7] - v_[6];
+    const double v00 = v_[0] + p.x * x0, v10 = v_[2] + p.x * x1;
+    const double v01 = v_[4] + p.x * x2, v11 = v_[6] + p.x * x3;
+    const double y0 = v10 - v00, y1 = v11 - v01, v0 = v00 + p.y * y0, v1 = v01 + p.y * y1;
+    const double xy0 = x1 - x0, xy1 = x3 - x2, xz0 = x2 - x0, xz1 = x3 - x1;
+    const double second =
+        k.x * (y1 - y0) + k.y * (xz0 + p.y * (xz1 - xz0)) + k.z * (xy0 + p.z * (xy1 - xy0));
+    return std::max(length * (v0 + p.z * (v1 - v0) + length * length * second), 0.0);
   }
 
   /// The t in [ta, tb] where the integral from ta is `target`, which that up to tb exceeds.
