@@ -190,7 +190,8 @@ RGB PathTracer::emission(const Flight& before_previous, const Arrival& previous,
   if (!hittable(scene_, at.y)) return RGB(0);
   const RGB value = at.throughput * L_e(scene_, at.y, -flight.w);
   if (is_black(value) || flight.x.kind == VertexKind::Sensor || flight.x.degenerate) return value;
-  if (settings_.null_collisions) return RGB(0);  // direct() has it
+  // direct() has the rest: at points of an emitting medium, it would find hardly bounded values.
+  if (settings_.null_collisions) return at.y.in_medium() ? value : RGB(0);
   const double pdf_hit = pdf_arrival(at.y, at.edge, flight.pdf_sigma);
   const double pdf_light = pdf_emitter_position(scene_, at.y);
   const double pdf_others = pdf_light * (1 + share(before_previous, previous, at.y));
@@ -219,6 +220,7 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
 RGB PathTracer::direct(const Flight& flight, const Arrival& at, SampleStream& u) const {
   SubpathVertex light;
   if (!connectible(scene_, at.y) || !sample_emitter(scene_, u, light)) return RGB(0);
+  if (settings_.null_collisions && light.x.in_medium()) return RGB(0);
   const auto seen = see(light, at.y, -flight.w, u);
   if (!seen) return RGB(0);
   if (settings_.null_collisions) return at.throughput * seen->first;
