@@ -12,6 +12,7 @@
 #include <vector>
 
 #include "core/estimators/sampling.h"
+#include "core/image/image_io.h"
 #include "core/scene_io/load.h"
 #include "media/registry.h"
 #include "mlt/bootstrap.h"
@@ -76,7 +77,9 @@ struct Mixture {
 
 int run(const std::string& file, const std::string& mutation, int chains, int steps) {
   std::vector<std::string> warnings;
-  const Scene scene(load_mitsuba_xml(file, builtin_media(), {}, warnings));
+  LoadOptions options;
+  options.read_image = read_image;
+  const Scene scene(load_mitsuba_xml(file, builtin_media(), options, warnings));
   const auto bdpt = make_bdpt(scene, {.max_depth = kMaxDepth, .seen_light = false});
   const auto [width, height] = rendered_size(scene.film());
   const Pilot pilot = run_pilot(*bdpt, static_cast<double>(width) / height, kSeed, 1 << 15);

@@ -6,6 +6,7 @@
 #include <filesystem>
 
 #include "core/estimators/sampling.h"
+#include "core/image/image_io.h"
 #include "core/math/random.h"
 #include "core/math/warp.h"
 #include "core/scene_io/load.h"
@@ -188,8 +189,10 @@ int main(int argc, char** argv) {
   try {
     for (int i = 1; i < argc; ++i) {
       std::vector<std::string> warnings;
-      subjects.push_back(std::make_unique<Subject>(
-          load_mitsuba_xml(argv[i], builtin_media(), LoadOptions{}, warnings)));
+      LoadOptions options;
+      options.read_image = read_image;
+      subjects.push_back(
+          std::make_unique<Subject>(load_mitsuba_xml(argv[i], builtin_media(), options, warnings)));
       subjects.back()->register_all(scene_name(argv[i]));
     }
   } catch (const Error& e) {

@@ -9,6 +9,7 @@
 #include <map>
 
 #include "core/estimators/sampling.h"
+#include "core/image/image_io.h"
 #include "core/scene_io/load.h"
 #include "media/registry.h"
 #include "mlt/registry.h"
@@ -48,7 +49,8 @@ const std::vector<Peer>& peers() {
                                         {"door-ajar", {0, 0, 0, 0}, false},
                                         {"door-ajar-fog", {0, 0, 0, 0}, false},
                                         {"smoke", {96, 112, 32, 32}, true},
-                                        {"caustic-beam", {0, 0, 0, 0}, false, false}};
+                                        {"caustic-beam", {0, 0, 0, 0}, false, false},
+                                        {"sun-and-sky", {64, 144, 64, 32}, true}};
   return all;
 }
 
@@ -216,6 +218,7 @@ TEST_P(Peers, PicturesAgreeWithMitsuba) {
   const Peer& peer = GetParam();
   if (!is_long() && peer.crop[2] == 0) GTEST_SKIP() << "in the long suite";
   LoadOptions options;
+  options.read_image = read_image;
   if (!is_long()) options.crop = peer.crop;
   std::vector<std::string> warnings;
   const Scene scene(
