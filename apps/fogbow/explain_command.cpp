@@ -75,7 +75,7 @@ void find_unreachable(const LightCensus& census, const Scene& scene,
   std::string eye = scene.sensor().dirac_position() ? "the pinhole" : "the lens";
   findings.push_back(
       {percent(census.dirac_lit_through) +
-           " of the light from point lights first meets a specular surface, and " +
+           " of the light from point or directional lights first meets a specular surface, and " +
            percent(census.seen_through) + " of the picture is seen through specular surfaces: " +
            "paths with specular vertices on both sides of every other, from a point to " + eye +
            ", are beyond every technique and missing from the picture",

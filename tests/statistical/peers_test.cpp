@@ -25,7 +25,7 @@ constexpr int kReplicates = 32;
 /// A pixel; a replicate's bootstrap takes no less time.
 constexpr int kPilotMutations = 4;
 constexpr int kMostClasses = 40;
-constexpr int kTests = (11 * 7 + 2 * 8) * (256 + 16 + 1 + kMostClasses);
+constexpr int kTests = (12 * 7 + 2 * 8) * (256 + 16 + 1 + kMostClasses);
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 constexpr double kPower = 0.99;
 

@@ -55,13 +55,32 @@ class Render(CliTest):
         self.assertNotIn("nothing here is hard", hard)
         self.assertRegex(hard, r"what next-event estimation can make +0\.00%")
         self.assertRegex(hard, r"- 100% of the light are caustics on surfaces:")
-        self.assertIn("100% of the light from point lights first meets a specular surface", hard)
+        self.assertIn("100% of the light from point or directional lights first meets a specular surface", hard)
         self.write("dark.xml", scene_text(turn=-90))
         self.assertIn("no light reaches the camera", self.expect(0, "explain", "dark.xml").stdout.decode())
         self.write("odd.xml", scene_text(more=UNUSED_PROPERTY))
         self.assertIn("1 warning about the scene", self.expect(0, "explain", "odd.xml").stdout.decode())
         self.expect(3, "explain", "odd.xml", "--strict", message="--strict")
         self.expect(2, "explain", "scene.xml", "--samples", "0", message="--samples")
+
+    def test_a_picture_as_the_sky(self):
+        """An OpenEXR picture, and a PNG of the same colours in sRGB, shine alike."""
+        constant = '<emitter type="constant"><rgb name="radiance" value="0.5"/></emitter>'
+        self.write("grey.xml", scene_text(emitter="", more=constant))
+        self.expect(0, "render", "grey.xml", "-o", "grey.exr", "--integrator", "path", "--spp", "64")
+        lit = {}
+        for picture in ("grey.exr", "grey.png"):
+            sky = f'<emitter type="envmap"><string name="filename" value="{picture}"/></emitter>'
+            self.write("sky.xml", scene_text(emitter="", more=sky))
+            self.expect(0, "render", "sky.xml", "-o", "sky.exr", "--integrator", "path", "--spp", "256")
+            lit[picture] = self.report("sky.json")["b"]["value"]
+        self.assertGreater(lit["grey.exr"], 0)
+        self.assertAlmostEqual(lit["grey.png"] / lit["grey.exr"], 1, delta=0.02)
+        self.write("sky.xml", scene_text(emitter="", more=sky.replace("grey", "absent")))
+        self.expect(4, "render", "sky.xml", message="absent.png")
+        self.write("garbage.png", "no picture")
+        self.write("sky.xml", scene_text(emitter="", more=sky.replace("grey", "garbage")))
+        self.expect(4, "render", "sky.xml", message="garbage.png")
 
     def test_errors(self):
         self.expect(2, "render", "scene.xml", "--integrator", "radiosity", message="radiosity")
