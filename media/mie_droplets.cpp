@@ -71,7 +71,7 @@ struct NumberOfSize {
 /// deviations below the median to 4 above where forward scattering ∝ r⁴ has its own.
 std::vector<NumberOfSize> sizes_in_number(double x_of_median, double spread) {
   constexpr double kReach = 4, kStep = 0.05, kLeastSizes = 2048, kWork = 1e6;
-  constexpr double kLargestAlone = 2e4, kLargestOfMany = 2000;
+  constexpr double kLargestAlone = 5000, kLargestOfMany = 2000;
   const double lo = -kReach * spread, hi = kReach * spread + 4 * sqr(spread);
   const double most = spread > 0 ? kLargestOfMany : kLargestAlone;
   if (!(x_of_median * std::exp(hi) <= most))
