@@ -3,6 +3,7 @@
 #include <algorithm>
 #include <array>
 #include <cmath>
+#include <type_traits>
 
 #include "core/scene/volume.h"
 
@@ -23,8 +24,12 @@ class RegularTracking {
     curvature_ = Vec3(d_.y * d_.z, d_.x * d_.z, d_.x * d_.y) / 12.0;
   }
 
-  /// The part of [t0, t1] within the volume's bounds; false where there is none.
-  bool clip(double& t0, double& t1) const { return fogbow::clip(volume_.bounds(), ray_, t0, t1); }
+  /// The part of [t0, t1] within the volume's bounds where it may not be zero; false where there is
+  /// none.
+  bool clip(double& t0, double& t1) const {
+    return fogbow::clip(volume_.bounds(), ray_, t0, t1) &&
+           fogbow::clip(volume_.occupied(), {o_, d_}, t0, t1);
+  }
 
   using Index = std::array<int, 3>;
 
@@ -69,22 +74,31 @@ class RegularTracking {
     double next[3];
     for (int axis = 0; axis < 3; ++axis) {
       const double at = o_[axis] + t0 * d_[axis] - first[axis];
-      i[axis] = std::clamp(static_cast<int>(std::floor(at / kSide)), 0, count[axis] - 1);
+      i[axis] = std::min(static_cast<int>(std::max(at, 0.0)) / kSide, count[axis] - 1);
       beyond[axis] = up_[axis] ? count[axis] : -1;
       next[axis] = plane<kSide>(axis, first[axis], i[axis]);
     }
-    for (double ta = t0;;) {
-      const int axis =
-          next[0] < next[1] ? (next[0] < next[2] ? 0 : 2) : (next[1] < next[2] ? 1 : 2);
+    double ta = t0;
+    bool goes_on = true;
+    // One copy for each axis: all of it in registers.
+    const auto leave_by = [&](auto axis) {
       // Rounding may put a plane a little before where the last one was met.
       const double tb = std::min(std::max(next[axis], ta), t1);
-      if (!visit(i, ta, tb)) return false;
-      if (!(tb < t1)) return true;
+      goes_on = visit(i, ta, tb);
+      if (!goes_on || !(tb < t1)) return false;
       i[axis] += 2 * up_[axis] - 1;
-      if (i[axis] == beyond[axis]) return true;
+      if (i[axis] == beyond[axis]) return false;
       next[axis] = plane<kSide>(axis, first[axis], i[axis]);
       ta = tb;
+      return true;
+    };
+    const std::integral_constant<int, 0> x;
+    const std::integral_constant<int, 1> y;
+    const std::integral_constant<int, 2> z;
+    while (next[0] < next[1] ? (next[0] < next[2] ? leave_by(x) : leave_by(z))
+                             : (next[1] < next[2] ? leave_by(y) : leave_by(z))) {
     }
+    return goes_on;
   }
 
   /// Where the ray leaves cube i of an axis. The same plane has the same distance whoever asks.

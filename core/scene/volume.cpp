@@ -139,6 +139,13 @@ void Volume::make_blocks() {
     for (int y = 0; y < blocks_[1]; ++y)
       for (int x = 0; x < blocks_[0]; ++x) make_block(x, y, static_cast<int>(z));
   });
+  const Vec3 first(first_[0], first_[1], first_[2]);
+  for (int z = 0; z < blocks_[2]; ++z)
+    for (int y = 0; y < blocks_[1]; ++y)
+      for (int x = 0; x < blocks_[0]; ++x)
+        if (kinds_[block_index(x, y, z)] != BlockKind::Empty)
+          for (const Vec3& side : {Vec3(x, y, z), Vec3(x + 1, y + 1, z + 1)})
+            occupied_.extend(first + double(kBlock) * side);
 }
 
 void Volume::make_block(int bx, int by, int bz) {

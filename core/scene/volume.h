@@ -73,6 +73,8 @@ class Volume {
   const std::uint32_t* offsets(int axis) const { return offsets_[axis].data() - first_[axis]; }
   const float* voxels() const { return voxels_.data(); }
 
+  /// Around all blocks that are not empty, in lattice coordinates.
+  const Bounds& occupied() const { return occupied_; }
   std::size_t block_index(int x, int y, int z) const {
     return (static_cast<std::size_t>(z) * blocks_[1] + y) * blocks_[0] + x;
   }
@@ -102,6 +104,7 @@ class Volume {
   std::vector<float, LargePageAllocator<float>> voxels_;
   std::vector<float> block_max_;
   std::vector<BlockKind> kinds_;
+  Bounds occupied_;
 };
 
 /// The polynomial of one cell and channel from its corners' values, at local coordinates.
