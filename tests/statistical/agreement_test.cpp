@@ -28,7 +28,7 @@ const int kRuns = std::getenv("FOGBOW_LONG") ? 48 : 32;
 const std::uint64_t kPilotMutations = std::getenv("FOGBOW_LONG") ? 1 << 20 : 1 << 16;
 constexpr std::uint64_t kMutationsPerPrimarySample = 8;  // in time
 /// An upper bound on the tests of this file together; counted below.
-constexpr int kTests = 2500, kTestsOfOneScene = 130, kTestsOfTwoStages = 60;
+constexpr int kTests = 3000, kTestsOfOneScene = 130, kTestsOfTwoStages = 60;
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 
 /// In the long suite what validation asks for. In the fast one as much as seconds allow: less
@@ -37,7 +37,9 @@ const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 Precision precision(const std::string& scene) {
   if (std::getenv("FOGBOW_LONG")) return {0.01, 0.05};
   if (scene == "water") return {0.25, 1};
-  if (scene == "droplets" || scene == "fog-in-glass" || scene == "two-kinds-of-glass")
+  if (scene == "patchy-flame") return {0.2, 0.8};  // emission of media has the heaviest tails
+  if (scene == "droplets" || scene == "fog-in-glass" || scene == "smoke-in-glass" ||
+      scene == "two-kinds-of-glass")
     return {0.2, 0.8};
   if (scene == "glass-sphere-fog") return {0.15, 1};
   return {0.12, 0.6};
