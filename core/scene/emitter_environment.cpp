@@ -1,6 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
+#include <array>
+#include <cmath>
 #include <stdexcept>
+#include <string>
+#include <vector>
 
 #include "core/image/image.h"
 #include "core/math/discrete_distribution.h"
