@@ -85,7 +85,7 @@ double PathTracer::share(const Flight& flight, const Arrival& at, const Vertex& 
   const warp::Equiangular law = equiangular_law(flight, light.position());
   const double t = at.edge.length;
   if (!(law.distance > 0) || !(t > law.t0 && t < law.t1)) return 0;
-  return law.pdf(t) / pdf_distance(at.edge, at.y);
+  return law.pdf(t) / pdf_distance(scene_, at.edge, at.y);
 }
 
 bool PathTracer::leave_sensor(SampleStream& eye, Vec2& raster, Flight& flight) const {
@@ -111,15 +111,22 @@ bool PathTracer::arrive_by_null_collisions(const Flight& flight, SampleStream& e
   NullCollisionFlight end{0, false, RGB(1)};
   at.edge = Edge{flight.w, 0, RGB(1), RGB(1)};
   at.throughput = flight.throughput;
-  const ExtendResult result = trace_media(
-      scene_, flight.x, ray, at.y, at.edge.length, [&](const Medium* medium, double t0, double t1) {
-        if (!medium || end.inside) return;
-        if (is_sampled(medium))
-          end = delta_tracking(*medium, ray, t0, t1, uniform);
-        else
-          end.weight = ratio_tracking(*medium, ray, t0, t1, uniform);
-        at.throughput *= end.weight;
-      });
+  const auto pass_medium = [&](const Medium* medium, double t0, double t1) {
+    if (!medium || end.inside) return;
+    if (is_sampled(medium))
+      end = delta_tracking(*medium, ray, t0, t1, uniform);
+    else
+      end.weight = ratio_tracking(*medium, ray, t0, t1, uniform);
+    at.throughput *= end.weight;
+  };
+  const auto pass_surface = [&](const RGB& T) {
+    if (end.inside) return false;
+    const bool passes = uniform() < mean(T);
+    at.throughput *= passes ? T / mean(T) : RGB(1 / (1 - mean(T)));
+    return passes;
+  };
+  const ExtendResult result =
+      trace_media(scene_, flight.x, ray, at.y, at.edge.length, pass_medium, pass_surface);
   if (end.inside) {
     const auto y = medium_vertex_at(scene_, flight.x, flight.w, end.t, flight.t_min, at.edge);
     if (!y) return false;
@@ -138,10 +145,14 @@ RGB PathTracer::ratio_transmittance(const Vertex& a, const Vertex& b, const Edge
   RGB tau(1);
   const Ray ray{backwards ? b.position() : a.position(), backwards ? -a_to_b.w : a_to_b.w, 0,
                 a_to_b.length};
-  trace_media(scene_, backwards ? b : a, ray, unused, length,
-              [&](const Medium* medium, double t0, double t1) {
-                if (medium) tau *= ratio_tracking(*medium, ray, t0, t1, [&] { return u.next(); });
-              });
+  const auto pass_medium = [&](const Medium* medium, double t0, double t1) {
+    if (medium) tau *= ratio_tracking(*medium, ray, t0, t1, [&] { return u.next(); });
+  };
+  const auto pass_surface = [&](const RGB& T) {
+    tau *= T;
+    return true;
+  };
+  trace_media(scene_, backwards ? b : a, ray, unused, length, pass_medium, pass_surface);
   return tau;
 }
 
@@ -150,7 +161,7 @@ bool PathTracer::arrive(const Flight& flight, SampleStream& eye, Arrival& at) co
   const ExtendResult result =
       extend(scene_, flight.x, flight.w, eye.next2(), at.y, at.edge, flight.t_min, flight.t_max);
   if (result != ExtendResult::Reached && !make_infinite_vertex(scene_, at.edge, at.y)) return false;
-  at.throughput = flight.throughput * at.edge.tau / pdf_distance(at.edge, at.y);
+  at.throughput = flight.throughput * at.edge.tau / pdf_distance(scene_, at.edge, at.y);
   return is_finite(at.throughput) && !is_black(at.throughput);
 }
 
@@ -192,7 +203,7 @@ RGB PathTracer::emission(const Flight& before_previous, const Arrival& previous,
   if (is_black(value) || flight.x.kind == VertexKind::Sensor || flight.x.degenerate) return value;
   // direct() has the rest: at points of an emitting medium, it would find hardly bounded values.
   if (settings_.null_collisions) return at.y.in_medium() ? value : RGB(0);
-  const double pdf_hit = pdf_arrival(at.y, at.edge, flight.pdf_sigma);
+  const double pdf_hit = pdf_arrival(scene_, at.y, at.edge, flight.pdf_sigma);
   const double pdf_light = pdf_emitter_position(scene_, at.y);
   const double pdf_others = pdf_light * (1 + share(before_previous, previous, at.y));
   return value * (pdf_hit / (pdf_hit + pdf_others));
@@ -213,7 +224,7 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
       radiance * geometric_term(scene_, light.x, y, *edge) * edge->tau * s.f_hat / light.pdf;
   double pdf_hit = 0;
   if (hittable(scene_, light.x) && s.pdf_to_light > 0)
-    pdf_hit = pdf_arrival(light.x, reversed(*edge), s.pdf_to_light / s.survival_to_light);
+    pdf_hit = pdf_arrival(scene_, light.x, reversed(*edge), s.pdf_to_light / s.survival_to_light);
   return std::pair(value, pdf_hit);
 }
 
@@ -241,7 +252,7 @@ RGB PathTracer::direct_equiangular(const Flight& flight, SampleStream& u) const 
   if (!y || !connectible(scene_, *y)) return RGB(0);
   const auto seen = see(light, *y, -flight.w, u);
   if (!seen) return RGB(0);
-  const double q = law.pdf(t), free_flight = pdf_distance(at.edge, *y);
+  const double q = law.pdf(t), free_flight = pdf_distance(scene_, at.edge, *y);
   const double pdf = q * light.pdf;
   const double pdf_others = free_flight * (light.pdf + seen->second);
   return flight.throughput * at.edge.tau / q * seen->first * (pdf / (pdf + pdf_others));

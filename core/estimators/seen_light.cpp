@@ -41,16 +41,21 @@ class SeenLight final : public Estimator {
   static constexpr double kSplitting = 1.0 / 16;
 
   /// Along w from x to the vertex number k from the eye.
-  void go(const Way& way, const Vertex& x, const Vec3& w, RGB throughput, int k, double near = 0,
-          double far = kInfinity) const {
-    Vertex next;
-    Edge edge;
-    const ExtendResult result = extend_to_surface(scene_, x, w, next, edge, near, far);
-    throughput *= edge.tau;
-    if (result != ExtendResult::Reached) return see_sky(way, edge, throughput, k);
-    if (hittable(scene_, next) && !settings_.hides(scene_, next, k))
-      way.add(throughput, L_e(scene_, next, -w), k);
-    if (k < max_vertices_) scatter(way, next, -w, throughput, k);
+  void go(const Way& way, const Vertex& x, const Vec3& w, const RGB& throughput, int k,
+          double near = 0, double far = kInfinity) const {
+    RGB behind(1);
+    // Every surface that light passes in part is seen, and what lies behind it.
+    for (int passages = 0; !is_black(behind); ++passages) {
+      Vertex next;
+      Edge edge;
+      const ExtendResult result = extend_to_surface(scene_, x, w, next, edge, near, far, passages);
+      const RGB arrived = throughput * edge.tau;
+      if (result != ExtendResult::Reached) return see_sky(way, edge, arrived, k);
+      if (hittable(scene_, next) && !settings_.hides(scene_, next, k))
+        way.add(arrived, L_e(scene_, next, -w), k);
+      behind = edge.tau * passage(scene_, next, w);
+      if (k < max_vertices_) scatter(way, next, -w, arrived, k);
+    }
   }
 
   void see_sky(const Way& way, const Edge& edge, const RGB& throughput, int k) const {

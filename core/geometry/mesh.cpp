@@ -135,6 +135,12 @@ class Mesh final : public Shape {
     return d;
   }
 
+  std::array<Vec2, 2> uv_derivatives(const SurfacePoint& x) const override {
+    if (uvs_.empty()) return Shape::uv_derivatives(x);
+    const Triangle& t = triangles_[x.primitive];
+    return {uvs_[t[1]] - uvs_[t[0]], uvs_[t[2]] - uvs_[t[0]]};
+  }
+
   double area() const override { return area_.total(); }
   SurfacePoint sample(const Vec2& u) const override {
     const std::size_t i = area_.sample(u.x);

@@ -98,9 +98,9 @@ class Quads final : public Shape {
 };
 
 std::shared_ptr<const Shape> make_quads(const Transform& to_world, std::vector<Vec3> corners,
-                                        const std::vector<Face>& faces, bool flip_normals) {
+                                        const std::vector<Face>& faces, bool inward) {
   for (Vec3& p : corners) p = to_world.point(p);
-  const double sign = to_world.flips_orientation() != flip_normals ? -1 : 1;
+  const double sign = to_world.flips_orientation() != inward ? -1 : 1;
   return std::make_shared<Quads>(std::move(corners), faces, sign);
 }
 
@@ -112,12 +112,13 @@ std::shared_ptr<const Shape> make_rectangle(const Transform& to_world, bool flip
 }
 
 std::shared_ptr<const Shape> make_cube(const Transform& to_world, bool flip_normals) {
+  // Faces as Mitsuba lays texture coordinates on them; u × v points inwards on all.
   std::vector<Vec3> corners;  // bit i of the index is the sign along axis i
   for (int i = 0; i < 8; ++i) corners.emplace_back(i & 1 ? 1 : -1, i & 2 ? 1 : -1, i & 4 ? 1 : -1);
   return make_quads(
       to_world, std::move(corners),
-      {{0, 4, 6, 2}, {1, 3, 7, 5}, {0, 1, 5, 4}, {2, 6, 7, 3}, {0, 2, 3, 1}, {4, 5, 7, 6}},
-      flip_normals);
+      {{0, 2, 6, 4}, {5, 7, 3, 1}, {0, 4, 5, 1}, {7, 6, 2, 3}, {2, 0, 1, 3}, {4, 6, 7, 5}},
+      !flip_normals);
 }
 
 }  // namespace fogbow

@@ -3,6 +3,14 @@
 
 namespace fogbow {
 
+std::array<Vec3, 2> Shape::uv_tangents(const SurfacePoint& x) const {
+  const SurfaceDerivatives d = derivatives(x);
+  const auto [a, b] = uv_derivatives(x);
+  const double det = a.x * b.y - a.y * b.x;
+  if (!(std::abs(det) > 0) || !std::isfinite(det)) return {d.dp_du, d.dp_dv};
+  return {(b.y * d.dp_du - a.y * d.dp_dv) / det, (a.x * d.dp_dv - b.x * d.dp_du) / det};
+}
+
 bool Shape::avoids(std::uint32_t primitive, const Bounds& box) const {
   if (!primitive_bounds(primitive).overlaps(box)) return true;
   if (!polygonal()) return false;

@@ -12,6 +12,8 @@
 
 namespace fogbow {
 
+class Shape;
+
 /// A point of a surface with its tangent geometry, in world space.
 struct SurfacePoint {
   Vec3 position;
@@ -20,6 +22,7 @@ struct SurfacePoint {
   Vec2 uv;        ///< texture coordinates
   Vec2 local;     ///< coordinates on the primitive (barycentric, or the shape's own)
   std::uint32_t primitive = 0;
+  const Shape* shape = nullptr;  ///< where the point is that of a scene
 };
 
 /// First derivatives at a surface point with respect to two coordinates of the primitive.
@@ -80,6 +83,15 @@ class Shape {
 
   virtual SurfacePoint surface_point(std::uint32_t primitive, const Vec2& local) const = 0;
   virtual SurfaceDerivatives derivatives(const SurfacePoint& point) const = 0;
+
+  /// Of the texture coordinates by the coordinates that derivatives() refers to; unless overridden
+  /// they are the same.
+  virtual std::array<Vec2, 2> uv_derivatives(const SurfacePoint&) const {
+    return {Vec2(1, 0), Vec2(0, 1)};
+  }
+  /// Derivatives of the position by the texture coordinates; where those are singular, by the
+  /// coordinates of the primitive.
+  std::array<Vec3, 2> uv_tangents(const SurfacePoint& x) const;
 
   /// Total area, world units squared.
   virtual double area() const = 0;

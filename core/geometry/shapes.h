@@ -23,8 +23,11 @@ std::shared_ptr<const Shape> make_mesh(TriangleMeshData data);
 /// none.
 std::vector<Vec3> vertex_normals(const TriangleMeshData& data);
 /// `flip_normals` turns the inside out.
+/// `to_object`: orthogonal, from the world to the axes of the texture coordinates (azimuth/2π,
+/// polar angle/π).
 std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius,
-                                         bool flip_normals = false);
+                                         bool flip_normals = false,
+                                         const Mat3& to_object = Mat3(1.0));
 /// The image of [−1,1]² × {0} with normal +z; exact.
 std::shared_ptr<const Shape> make_rectangle(const Transform& to_world, bool flip_normals = false);
 /// The image of [−1,1]³, normals outwards; exact.

@@ -61,7 +61,8 @@ SurfacePoint Sphere::surface_point(std::uint32_t, const Vec2& local) const {
   x.position = center_ + radius_ * n;
   x.n_g = flip_ ? -n : n;
   x.shading = Frame(x.n_g);
-  x.uv = {local.x, std::acos(std::min(std::max(n.z, -1.0), 1.0)) * kInvPi};
+  const Vec3 m = to_object_ * n;
+  x.uv = {warp::invert_azimuth(m.x, m.y), std::acos(std::min(std::max(m.z, -1.0), 1.0)) * kInvPi};
   x.local = local;
   return x;
 }
@@ -69,6 +70,16 @@ SurfacePoint Sphere::surface_point(std::uint32_t, const Vec2& local) const {
 SurfaceDerivatives Sphere::derivatives(const SurfacePoint& x) const {
   const double curvature = (flip_ ? -1 : 1) / radius_;
   return {x.shading.s, x.shading.t, curvature * x.shading.s, curvature * x.shading.t};
+}
+
+std::array<Vec2, 2> Sphere::uv_derivatives(const SurfacePoint& x) const {
+  const Vec3 m = to_object_ * ((x.position - center_) / radius_);
+  const double sin2 = m.x * m.x + m.y * m.y;
+  const auto along = [&](const Vec3& direction) {
+    const Vec3 d = to_object_ * (direction / radius_);
+    return Vec2(0.5 * kInvPi * (m.x * d.y - m.y * d.x) / sin2, -kInvPi * d.z / std::sqrt(sin2));
+  };
+  return {along(x.shading.s), along(x.shading.t)};
 }
 
 SurfacePoint Sphere::sample(const Vec2& u) const {
@@ -106,10 +117,11 @@ Tessellation Sphere::tessellate() const {
   return {std::move(unit), std::move(triangles)};
 }
 
-std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius, bool flip_normals) {
+std::shared_ptr<const Shape> make_sphere(const Vec3& center, double radius, bool flip_normals,
+                                         const Mat3& to_object) {
   if (!is_finite(center) || !(radius > 0) || !std::isfinite(radius))
     throw std::domain_error("sphere needs a finite center and a positive finite radius");
-  return std::make_shared<Sphere>(center, radius, flip_normals);
+  return std::make_shared<Sphere>(center, radius, flip_normals, to_object);
 }
 
 bool Sphere::avoids(std::uint32_t, const Bounds& box) const {

@@ -8,8 +8,8 @@ namespace fogbow {
 /// both poles are resolved; its derivatives are along the shading frame, where no pole is singular.
 class Sphere final : public Shape {
  public:
-  Sphere(const Vec3& center, double radius, bool flip_normals)
-      : center_(center), radius_(radius), flip_(flip_normals) {}
+  Sphere(const Vec3& center, double radius, bool flip_normals, const Mat3& to_object)
+      : center_(center), radius_(radius), flip_(flip_normals), to_object_(to_object) {}
 
   const Vec3& center() const { return center_; }
   double radius() const { return radius_; }
@@ -25,6 +25,7 @@ class Sphere final : public Shape {
   bool avoids(std::uint32_t, const Bounds& box) const override;
   SurfacePoint surface_point(std::uint32_t, const Vec2& local) const override;
   SurfaceDerivatives derivatives(const SurfacePoint& point) const override;
+  std::array<Vec2, 2> uv_derivatives(const SurfacePoint& point) const override;
   double area() const override { return 4 * kPi * sqr(radius_); }
   SurfacePoint sample(const Vec2& u) const override;
   Vec2 invert(const SurfacePoint& point) const override;
@@ -37,6 +38,7 @@ class Sphere final : public Shape {
   Vec3 center_;
   double radius_;
   bool flip_;
+  Mat3 to_object_;  ///< orthogonal; of the texture coordinates alone
 };
 
 }  // namespace fogbow

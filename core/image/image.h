@@ -13,6 +13,7 @@ struct Image {
   int width = 0, height = 0;
   /// Place of the pixels (data window origin) in the whole picture (display window).
   int x = 0, y = 0, full_width = 0, full_height = 0;
+  bool integers = false;              ///< the file held whole numbers, which mean sRGB by custom
   std::vector<std::string> channels;  ///< "R", "G", "B", "Error.R", …
   std::vector<float> pixels;
   /// A vector holds a 4x4 matrix, row-major and for row vectors: the memory order of Mat4.

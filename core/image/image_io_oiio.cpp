@@ -155,6 +155,7 @@ Image read_image(const std::string& path) {
   image.y = spec.y - spec.full_y;
   image.full_width = spec.full_width;
   image.full_height = spec.full_height;
+  image.integers = !spec.format.is_floating_point();
   get_metadata(spec, image);
   if (!in->read_image(0, 0, 0, spec.nchannels, OIIO::TypeFloat, image.pixels.data()))
     fail(path, in->geterror());

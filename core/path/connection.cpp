@@ -35,9 +35,9 @@ double sum_techniques(const Scene& scene, const Subpath& path, int n, double pdf
   return pdf_last / path[n - 1].pdf * (connects + before);
 }
 
-double pdf_previous(const Subpath& path, int n, double pdf_sigma) {
+double pdf_previous(const Scene& scene, const Subpath& path, int n, double pdf_sigma) {
   if (n < 2) return 0;
-  return pdf_arrival(path[n - 2].x, reversed(path[n - 1].edge), pdf_sigma);
+  return pdf_arrival(scene, path[n - 2].x, reversed(path[n - 1].edge), pdf_sigma);
 }
 
 }  // namespace
@@ -66,15 +66,16 @@ std::optional<Connection> join(const Scene& scene, const Subpath& light, int s, 
     if (!raster) return std::nullopt;
     c.raster = *raster;
   }
-  const double pdf_y = pdf_arrival(y.x, reversed(*edge), at_z.pdf_to_light);
-  const double light_sum = sum_techniques(scene, light, s, pdf_y,
-                                          pdf_previous(light, s, at_y.pdf_to_light), Side::Light);
+  const double pdf_y = pdf_arrival(scene, y.x, reversed(*edge), at_z.pdf_to_light);
+  const double light_sum = sum_techniques(
+      scene, light, s, pdf_y, pdf_previous(scene, light, s, at_y.pdf_to_light), Side::Light);
   double eye_sum = 0;
   if (t > 1) {
-    const double pdf_z = s == 1 ? pdf_emission(scene, y.x, z.x, *edge) * pdf_distance(*edge, z.x)
-                                : pdf_arrival(z.x, *edge, at_y.pdf_to_eye);
-    eye_sum =
-        sum_techniques(scene, eye, t, pdf_z, pdf_previous(eye, t, at_z.pdf_to_eye), Side::Eye);
+    const double pdf_z =
+        s == 1 ? pdf_emission(scene, y.x, z.x, *edge) * pdf_distance(scene, *edge, z.x)
+               : pdf_arrival(scene, z.x, *edge, at_y.pdf_to_eye);
+    eye_sum = sum_techniques(scene, eye, t, pdf_z, pdf_previous(scene, eye, t, at_z.pdf_to_eye),
+                             Side::Eye);
   }
   c.weight = 1 / (1 + light_sum + eye_sum);
   return c;
@@ -89,7 +90,8 @@ std::optional<Connection> run_into_light(const Scene& scene, const Subpath& eye,
   Connection c;
   c.value = x.throughput * radiance;
   const Vertex& before = eye[t - 2].x;
-  const double pdf_before = pdf_emission(scene, x.x, before, back) * pdf_distance(back, before);
+  const double pdf_before =
+      pdf_emission(scene, x.x, before, back) * pdf_distance(scene, back, before);
   const double sum =
       sum_techniques(scene, eye, t, pdf_emitter_position(scene, x.x), pdf_before, Side::Eye);
   c.weight = 1 / (1 + sum);

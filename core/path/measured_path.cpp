@@ -105,14 +105,14 @@ double MeasuredPath::pdf_from_light(const Scene& scene, int i) const {
   if (i == 0) return pdf_emitter_position(scene, vertices_[0]);
   const Edge& e = edges_[i - 1];
   return to_measure(scene, vertices_[i - 1], vertices_[i], e, scattering_[i - 1].pdf_to_eye) *
-         pdf_distance(e, vertices_[i]);
+         pdf_distance(scene, e, vertices_[i]);
 }
 
 double MeasuredPath::pdf_from_eye(const Scene& scene, int i) const {
   if (i == last()) return scene.sensor().pdf_A(vertices_[i].position());
   const Edge e = reversed(edges_[i]);
   return to_measure(vertices_[i], e, scattering_[i + 1].pdf_to_light) *
-         pdf_distance(e, vertices_[i]);
+         pdf_distance(scene, e, vertices_[i]);
 }
 
 bool MeasuredPath::measure(const Scene& scene, const Path& path) {
@@ -127,7 +127,8 @@ bool MeasuredPath::measure(const Scene& scene, const Path& path) {
   return evaluate(scene);
 }
 
-// Pointers to media are written as places in the scene's list of them.
+// Pointers to media are written as places in the scene's list of them, those to shapes follow from
+// the primitive.
 void MeasuredPath::serialize(std::ostream& out, const Scene& scene) const {
   write_binary(out, static_cast<std::int32_t>(size()));
   for (Vertex x : vertices_) {
@@ -136,6 +137,7 @@ void MeasuredPath::serialize(std::ostream& out, const Scene& scene) const {
         std::ranges::find_if(media, [&](const auto& m) { return m.get() == x.medium; });
     write_binary(out, static_cast<std::int32_t>(found - media.begin()));
     x.medium = nullptr;
+    x.point.shape = nullptr;
     write_binary(out, x);
   }
   write_binary_vector(out, edges_);
@@ -160,6 +162,7 @@ MeasuredPath MeasuredPath::deserialize(std::istream& in, const Scene& scene) {
            (x.on_surface() && x.id.shape >= scene.surfaces().size()) ||
            (x.in_medium() && medium == media));
     x.medium = medium < media ? scene.media()[medium].get() : nullptr;
+    x.point.shape = x.on_surface() ? scene.surface(x.id.shape).shape.get() : nullptr;
     path.vertices_.push_back(x);
   }
   path.edges_ = read_binary_vector<Edge>(in, kMaxVertices);

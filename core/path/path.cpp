@@ -22,8 +22,9 @@ double pdf_from_light(const Scene& scene, const Path& path, int i) {
   if (i == 0) return pdf_emitter_position(scene, path[0]);
   const auto edge = connect(scene, path[i - 1], path[i]);
   if (!edge) return 0;
-  if (i == 1) return pdf_emission(scene, path[0], path[1], *edge) * pdf_distance(*edge, path[1]);
-  return pdf_arrival(path[i], *edge, scatter_at(scene, path, i - 1).pdf_to_eye);
+  if (i == 1)
+    return pdf_emission(scene, path[0], path[1], *edge) * pdf_distance(scene, *edge, path[1]);
+  return pdf_arrival(scene, path[i], *edge, scatter_at(scene, path, i - 1).pdf_to_eye);
 }
 
 /// The same from the eye, given path(i..k).
@@ -35,7 +36,7 @@ double pdf_from_eye(const Scene& scene, const Path& path, int i) {
   if (!edge) return 0;
   const double pdf_sigma = i + 1 == last ? sensor.pdf_sigma(path[last].position(), -edge->w)
                                          : scatter_at(scene, path, i + 1).pdf_to_light;
-  return pdf_arrival(path[i], reversed(*edge), pdf_sigma);
+  return pdf_arrival(scene, path[i], reversed(*edge), pdf_sigma);
 }
 
 }  // namespace

@@ -21,7 +21,7 @@ bool arrive(const Scene& scene, const SubpathVertex& x, const RGB& f, const Step
             SubpathVertex& next) {
   next.x = step.next;
   next.edge = step.edge;
-  const double distance = pdf_distance(step.edge, step.next);
+  const double distance = pdf_distance(scene, step.edge, step.next);
   next.throughput =
       x.throughput * f * (D(scene, x.x, step.edge.w) / step.pdf_sigma) * (step.edge.tau / distance);
   next.pdf = distance * (x.x.infinite() ? step.pdf_sigma * D(scene, step.next, step.edge.w)
@@ -61,7 +61,7 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
 
     x.x.degenerate = sample->degenerate;
     const double reverse =
-        pdf_arrival(path[before].x, reversed(x.edge), eye ? s.pdf_to_eye : s.pdf_to_light);
+        pdf_arrival(scene, path[before].x, reversed(x.edge), eye ? s.pdf_to_eye : s.pdf_to_light);
     path[before].other_techniques =
         other_techniques(scene, path, before, reverse, sample->degenerate, side);
     if (!eye && s.survival_to_light > 0) path[before].if_behind_specular = 1 / s.survival_to_light;
@@ -130,6 +130,7 @@ bool sample_emitter(const Scene& scene, SampleStream& u, SubpathVertex& start) {
   x.kind = vertex_kind(emitter.kind());
   x.point = point->surface;
   x.id = point->id;
+  if (x.on_surface()) x.point.shape = scene.surface(x.id.shape).shape.get();
   x.emitter = static_cast<int>(index);
   const bool bounds_media = x.on_surface() && scene.surface(x.id.shape).medium_boundary;
   if (!x.infinite() && !bounds_media)

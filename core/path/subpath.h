@@ -76,8 +76,8 @@ void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Su
                        Vec2& raster);
 
 /// Density of sampling x as the end of an edge that leaves its predecessor with density pdf_sigma.
-inline double pdf_arrival(const Vertex& x, const Edge& to_x, double pdf_sigma) {
-  return to_measure(x, to_x, pdf_sigma) * pdf_distance(to_x, x);
+inline double pdf_arrival(const Scene& scene, const Vertex& x, const Edge& to_x, double pdf_sigma) {
+  return to_measure(x, to_x, pdf_sigma) * pdf_distance(scene, to_x, x);
 }
 
 /// The same edge seen from its other end.
@@ -94,7 +94,9 @@ double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, 
 
 /// Whether a path may end at x₁ by running into it.
 inline bool hittable(const Scene& scene, const Vertex& x) {
-  return x.emitter >= 0 && !is_dirac(scene.emitter(x.emitter).kind());
+  if (x.emitter < 0 || is_dirac(scene.emitter(x.emitter).kind())) return false;
+  // Free flight never stops at what all light passes.
+  return passage(scene, x, x.point.n_g) != RGB(1);
 }
 
 /// A light with a Dirac position or direction is a point of a pinhole's picture; by convention it

@@ -67,8 +67,17 @@ void attenuate(Edge& edge, const Medium* medium, const Ray& ray, double t0, doub
   if (medium) attenuate(edge, medium, medium->optical_depth(ray, t0, t1));
 }
 
-bool passes(const Scene& scene, const Surface& surface, const SurfacePoint& point) {
-  return scene.has_null_surfaces() && surface.bsdf->opacity(point) == 0;
+/// What passes straight through a surface along w.
+RGB passage(const Scene& scene, const Surface& surface, const SurfacePoint& point, const Vec3& w) {
+  if (!scene.has_null_surfaces() || !surface.bsdf->has_passage()) return RGB(0);
+  return surface.bsdf->passage(point, point.shading.to_local(w));
+}
+
+void pass(Edge& edge, const RGB& T) {
+  if (T == RGB(1)) return;  // an index-matched boundary is nothing
+  edge.tau *= T;
+  edge.tau_q *= T;
+  ++edge.passages;
 }
 
 const Medium* behind(const Surface& surface, const SurfacePoint& point, const Vec3& w,
@@ -84,6 +93,14 @@ struct FreeFlight {
 
   explicit FreeFlight(const Vec2& u)
       : channel(std::min(static_cast<int>(u.x * 3), 2)), remaining(-std::log1p(-u.y)) {}
+  /// Whether it goes on behind a surface of passage T.
+  bool passes(double T) {
+    if (T == 0) return false;
+    const double depth = -std::log(T);
+    if (remaining < depth) return false;
+    remaining -= depth;
+    return true;
+  }
 };
 
 void make_surface_vertex(const Scene& scene, const Hit& hit, const SurfacePoint& point,
@@ -127,19 +144,21 @@ bool unobstructed(const Scene& scene, Ray ray, const Vertex& start, PrimitiveId 
     }
     const Surface& surface = scene.surface(hit->id.shape);
     const SurfacePoint point = scene.surface_point(*hit);
-    if (!passes(scene, surface, point)) return false;
+    const RGB T = passage(scene, surface, point, ray.d);
+    if (is_black(T)) return false;
     attenuate(edge, medium, ray, ray.t_min, hit->t);
+    pass(edge, T);
     medium = behind(surface, point, ray.d, medium);
     ray.t_min = hit->t;
     from = hit->id;
   }
 }
 
-/// Follows the ray through boundaries to the first surface that stops it, and tells `passed(medium,
-/// t0, t1)` what it has come through.
-template <class Passed>
+/// Follows the ray to the first surface that stops it, and tells `passed(medium, t0, t1)` what it
+/// has come through. Where a surface lets a part T through, `crosses(T)` decides.
+template <class Passed, class Crosses>
 ExtendResult follow(const Scene& scene, const Vertex& x, Ray ray, Vertex& next, double& t,
-                    Passed&& passed) {
+                    Passed&& passed, Crosses&& crosses) {
   const Medium* medium = medium_toward(scene, x, ray.d);
   PrimitiveId from = x.id;
   for (;;) {
@@ -150,7 +169,8 @@ ExtendResult follow(const Scene& scene, const Vertex& x, Ray ray, Vertex& next, 
     if (!hit) return t == kInfinity ? ExtendResult::Escaped : ExtendResult::Lost;
     const Surface& surface = scene.surface(hit->id.shape);
     const SurfacePoint point = scene.surface_point(*hit);
-    if (!passes(scene, surface, point)) {
+    const RGB T = passage(scene, surface, point, ray.d);
+    if (is_black(T) || (T != RGB(1) && !crosses(T))) {
       make_surface_vertex(scene, *hit, point, medium, next);
       return ExtendResult::Reached;
     }
@@ -170,7 +190,7 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
   const Medium* medium = medium_toward(scene, x, w);
   PrimitiveId from = x.id;
   FreeFlight flight(u);
-  edge = Edge{w, 0, RGB(1), RGB(1)};
+  edge = Edge{w};
   for (;;) {
     // Only what lies in front of the free flight's end matters; but where flights cost more than
     // rays, they are to end at the surface.
@@ -195,11 +215,13 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
     if (!hit) return t_max == kInfinity ? ExtendResult::Escaped : ExtendResult::Lost;
     const Surface& surface = scene.surface(hit->id.shape);
     const SurfacePoint point = scene.surface_point(*hit);
-    if (!passes(scene, surface, point)) {
+    if (flies) flight.remaining = std::max(flight.remaining - end.depth[flight.channel], 0.0);
+    const RGB T = passage(scene, surface, point, w);
+    if (!flight.passes(T[flight.channel])) {
       make_surface_vertex(scene, *hit, point, medium, next);
       return ExtendResult::Reached;
     }
-    if (flies) flight.remaining = std::max(flight.remaining - end.depth[flight.channel], 0.0);
+    pass(edge, T);
     medium = behind(surface, point, w, medium);
     ray.t_min = end.t;
     ray.t_max = t_max;
@@ -208,18 +230,24 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
 }
 
 ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& w, Vertex& next,
-                               Edge& edge, double t_min, double t_max) {
+                               Edge& edge, double t_min, double t_max, std::int64_t passages) {
   const Ray ray{x.position(), w, t_min, t_max};
-  edge = Edge{w, 0, RGB(1), RGB(1)};
-  return follow(scene, x, ray, next, edge.length, [&](const Medium* medium, double t0, double t1) {
-    attenuate(edge, medium, ray, t0, t1);
-  });
+  edge = Edge{w};
+  return follow(
+      scene, x, ray, next, edge.length,
+      [&](const Medium* medium, double t0, double t1) { attenuate(edge, medium, ray, t0, t1); },
+      [&](const RGB& T) {
+        if (passages-- <= 0) return false;
+        pass(edge, T);
+        return true;
+      });
 }
 
 ExtendResult trace_media(const Scene& scene, const Vertex& x, const Ray& ray, Vertex& next,
                          double& length,
-                         const std::function<void(const Medium*, double, double)>& passed) {
-  return follow(scene, x, ray, next, length, passed);
+                         const std::function<void(const Medium*, double, double)>& passed,
+                         const std::function<bool(const RGB&)>& crosses) {
+  return follow(scene, x, ray, next, length, passed, crosses);
 }
 
 /// More sections than most rays have; where there are more, the buffer grows once.
@@ -235,12 +263,12 @@ void RayProfile::trace(const Scene& scene, const Vertex& x, const Vec3& w, doubl
   sections_.clear();
   sections_.reserve(kSections);
   answers_.fill({-1, RGB(0)});
-  edge_ = Edge{w, 0, RGB(1), RGB(1)};
+  edge_ = Edge{w};
   const auto add = [&](const Medium* medium, double t0, double t1) {
-    sections_.push_back({t0, t1, medium, edge_.tau, edge_.tau_q});
+    sections_.push_back({t0, t1, medium, edge_.tau, edge_.tau_q, edge_.passages});
     attenuate(edge_, medium, ray_, t0, t1);
   };
-  const auto pass = [&](const Medium* medium, double t0, double t1) {
+  const auto passed = [&](const Medium* medium, double t0, double t1) {
     double a = t0, b = t1;
     if (medium && medium->is_heterogeneous() && clip(medium->support(), ray_, a, b))
       for (int i = 1; i < kCuts; ++i) {
@@ -251,7 +279,11 @@ void RayProfile::trace(const Scene& scene, const Vertex& x, const Vec3& w, doubl
       }
     add(medium, t0, t1);
   };
-  has_wall_ = follow(scene, x, ray_, wall_, edge_.length, pass) == ExtendResult::Reached;
+  const auto crosses = [&](const RGB& T) {
+    pass(edge_, T);
+    return true;
+  };
+  has_wall_ = follow(scene, x, ray_, wall_, edge_.length, passed, crosses) == ExtendResult::Reached;
 }
 
 const RayProfile::Section& RayProfile::section_at(double t) const {
@@ -292,23 +324,26 @@ const Medium* RayProfile::scatters_at(double t) const {
 
 Vertex RayProfile::vertex(const Scene& scene, double t, Edge& edge) const {
   const Section& s = section_at(t);
-  edge = Edge{ray_.d, t, s.tau, s.tau_q};
+  edge = Edge{ray_.d, t, s.tau, s.tau_q, s.passages};
   attenuate(edge, s.medium, ray_, s.begin, t);
   Vertex y;
   make_medium_vertex(scene, ray_(t), s.medium, y);
   return y;
 }
 
-Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary) {
-  const RGB weights =
-      end.in_medium() ? end.medium->sigma_t(end.position()) * edge.tau_q : edge.tau_q;
+Vec2 invert_distance(const Scene& scene, const Edge& edge, const Vertex& end,
+                     const Vec2& auxiliary) {
+  const RGB stop = RGB(1) - passage(scene, end, edge.w);  // of surfaces
+  const RGB weights = edge.tau_q * (end.in_medium() ? end.medium->sigma_t(end.position()) : stop);
   double choice = auxiliary.x * (weights.x + weights.y + weights.z);
   int channel = 0;
   while (channel < 2 && choice >= weights[channel]) choice -= weights[channel++];
   const double within = std::min(choice / weights[channel], kOneMinusEpsilon);
   const double absorbed = 1 - edge.tau_q[channel];
-  // At a wall every u in (1 − τ, 1) leads there.
-  const double u = end.in_medium() ? absorbed : absorbed + auxiliary.y * edge.tau_q[channel];
+  // At a wall every u in (1 − τ, 1) leads there, at a surface of passage T those in (1 − τ, 1 −
+  // τT).
+  const double u =
+      end.in_medium() ? absorbed : absorbed + auxiliary.y * edge.tau_q[channel] * stop[channel];
   return {std::min((channel + within) / 3, kOneMinusEpsilon), std::min(u, kOneMinusEpsilon)};
 }
 
@@ -347,7 +382,7 @@ std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b
 
 std::optional<Vertex> medium_vertex_at(const Scene& scene, const Vertex& x, const Vec3& w, double t,
                                        double t_min, Edge& edge) {
-  edge = Edge{w, t, RGB(1), RGB(1)};
+  edge = Edge{w, t};
   const Ray ray{x.position(), w, t_min, t};
   const Medium* medium;
   if (!(t > t_min) || !unobstructed(scene, ray, x, kNoPrimitive, edge, medium) ||

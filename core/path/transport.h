@@ -17,31 +17,45 @@ inline bool is_sampled(const Medium* medium) {
 
 enum class ExtendResult { Reached, Escaped, Lost };
 
-/// Density of where free flight along `edge` ends: q(t) [1/length] at a medium vertex, the mass Q_M
-/// elsewhere. Channels are chosen uniformly.
-inline double pdf_distance(const Edge& edge, const Vertex& end) {
-  if (end.in_medium()) return mean(end.medium->sigma_t(end.position()) * edge.tau_q);
-  return mean(edge.tau_q);
+/// By what a surface vertex dims light that passes straight through it along w; 0 elsewhere.
+inline RGB passage(const Scene& scene, const Vertex& x, const Vec3& w) {
+  if (!scene.has_null_surfaces() || !x.on_surface() || x.id == kNoPrimitive) return RGB(0);
+  return scene.surface(x.id.shape).bsdf->passage(x.point, x.point.shading.to_local(w));
 }
 
-/// Follows the ray that leaves `x` along `w` through index-matched boundaries to its next vertex,
-/// by free flight with primary samples u = (channel, distance). Escaped: `edge` describes the way
-/// to infinity. Lost: beyond `t_max`.
+/// Density of where free flight along `edge` ends: q(t) [1/length] at a medium vertex, the mass Q_M
+/// elsewhere: of stopping at a surface that may be passed through, too. Channels are chosen
+/// uniformly.
+inline double pdf_distance(const Scene& scene, const Edge& edge, const Vertex& end) {
+  if (end.in_medium()) return mean(end.medium->sigma_t(end.position()) * edge.tau_q);
+  if (!scene.has_null_surfaces()) return mean(edge.tau_q);
+  return mean(edge.tau_q * (RGB(1) - passage(scene, end, edge.w)));
+}
+
+/// Follows the ray that leaves `x` along `w` to its next vertex by free flight with primary samples
+/// u = (channel, distance): a surface of passage T counts as an optical depth of −ln T. Escaped:
+/// `edge` describes the way to infinity. Lost: beyond `t_max`.
 ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u, Vertex& next,
                     Edge& edge, double t_min = 0, double t_max = kInfinity);
 
-/// The same to the first surface, whatever media lie before it. Escaped where there is none.
+/// The same to the first surface that stops the ray, whatever media lie before it, after as many
+/// `passages` through surfaces that need not have stopped it (or fewer, as the edge then says).
+/// Escaped where there is none.
 ExtendResult extend_to_surface(const Scene& scene, const Vertex& x, const Vec3& w, Vertex& next,
-                               Edge& edge, double t_min = 0, double t_max = kInfinity);
+                               Edge& edge, double t_min = 0, double t_max = kInfinity,
+                               std::int64_t passages = 0);
 
-/// The same with no medium but those that `passed(medium, t0, t1)` is told of, vacuum as null.
+/// The same with no medium but those that `passed(medium, t0, t1)` is told of, vacuum as null, and
+/// where a surface lets a part T through, `crosses(T)` decides.
 ExtendResult trace_media(const Scene& scene, const Vertex& x, const Ray& ray, Vertex& next,
                          double& length,
-                         const std::function<void(const Medium*, double, double)>& passed);
+                         const std::function<void(const Medium*, double, double)>& passed,
+                         const std::function<bool(const RGB&)>& crosses);
 
 /// The primary samples with which `extend` would have ended on `end`, drawn from their conditional
 /// law by uniform auxiliaries.
-Vec2 invert_distance(const Edge& edge, const Vertex& end, const Vec2& auxiliary);
+Vec2 invert_distance(const Scene& scene, const Edge& edge, const Vertex& end,
+                     const Vec2& auxiliary);
 
 /// The edge from `a` to `b`, nothing if a surface is in between: V and τ at once. `a` lies on the
 /// light's side: the answer is a function of the path alone.
@@ -52,8 +66,9 @@ std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b
 std::optional<Vertex> medium_vertex_at(const Scene& scene, const Vertex& x, const Vec3& w, double t,
                                        double t_min, Edge& edge);
 
-/// The media along a ray from a vertex to the first surface that stops it: where vertices can be on
-/// it, and how free flight spreads them.
+/// The media along a ray from a vertex to the first surface that stops all light: where vertices
+/// can be on it, and how free flight spreads them. Vertices on surfaces that light passes in part
+/// are none of it.
 class RayProfile {
  public:
   /// Between t_min and t_max from `x` along `w`.
@@ -70,7 +85,8 @@ class RayProfile {
 
   /// Transmittance of the sampled media up to distance t.
   RGB tau_q(double t) const;
-  /// The distance where 1 − τ_q of one channel is u; nothing beyond the wall.
+  /// The distance where 1 − τ_q of one channel is u; nothing beyond the wall, or where that is on a
+  /// surface.
   std::optional<double> distance(int channel, double u) const;
   /// The scattering medium at distance t, null where there is none.
   const Medium* scatters_at(double t) const;
@@ -82,6 +98,7 @@ class RayProfile {
     double begin, end;
     const Medium* medium;
     RGB tau, tau_q;  ///< up to its beginning
+    std::int64_t passages;
   };
   const Section& section_at(double t) const;
 

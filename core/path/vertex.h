@@ -33,8 +33,10 @@ struct Vertex {
 struct Edge {
   Vec3 w{0};          ///< unit, away from the vertex whose edge this is
   double length = 0;  ///< infinite towards an InfiniteLight
-  RGB tau{1};         ///< transmittance
-  RGB tau_q{1};  ///< its factor due to media in which vertices are sampled: what free flight sees
+  RGB tau{1};         ///< transmittance, of surfaces that are passed through too
+  RGB tau_q{1};  ///< its factor due to surfaces, and to media in which vertices are sampled: what
+                 ///< free flight sees
+  std::int64_t passages = 0;  ///< surfaces passed through that could have been vertices
 };
 
 /// Medium on the side of a vertex to which w points.

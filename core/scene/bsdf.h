@@ -23,11 +23,14 @@ class Bsdf {
  public:
   virtual ~Bsdf() = default;
 
-  /// Which parts are there; a `null` surface has neither and is a factor on edges.
+  /// Which parts are there; a `null` surface has neither.
   virtual bool has_smooth() const = 0;
   virtual bool has_dirac() const { return false; }
-  /// Probability that a ray is not passed through untouched; 0 for `null`.
-  virtual double opacity(const SurfacePoint&) const { return 1; }
+  /// Whether light can pass straight through: a factor on edges, never a vertex.
+  virtual bool has_passage() const { return false; }
+  /// That factor, in [0, 1], the same for w and −w; f_s and f_dirac hold what does not pass. Free
+  /// flight stops here with probability 1 − passage, channel by channel.
+  virtual RGB passage(const SurfacePoint&, const Vec3& /*w*/) const { return RGB(0); }
 
   /// The part that is a function, 1/sr, without cosine.
   virtual RGB f_s(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const = 0;

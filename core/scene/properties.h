@@ -13,6 +13,7 @@
 #include "core/scene/bsdf.h"
 #include "core/scene/medium.h"
 #include "core/scene/phase_function.h"
+#include "core/scene/texture.h"
 #include "core/scene/volume.h"
 #include "core/util/error.h"
 
@@ -48,17 +49,18 @@ struct Property {
 
 /// An object inside another one: written there, or referred to.
 struct NestedObject {
-  using Object =
-      std::variant<std::shared_ptr<const Bsdf>, std::shared_ptr<const Medium>,
-                   std::shared_ptr<const PhaseFunction>,
-                   std::shared_ptr<const ReconstructionFilter>, std::shared_ptr<const Volume>>;
+  using Object = std::variant<std::shared_ptr<const Bsdf>, std::shared_ptr<const Medium>,
+                              std::shared_ptr<const PhaseFunction>,
+                              std::shared_ptr<const ReconstructionFilter>,
+                              std::shared_ptr<const Texture>, std::shared_ptr<const Volume>>;
   std::string name;
   Object object;
   SourceLocation where;
   bool used = false;
 
   const char* type_name() const {
-    static constexpr const char* kNames[] = {"bsdf", "medium", "phase", "rfilter", "volume"};
+    static constexpr const char* kNames[] = {"bsdf",    "medium",  "phase",
+                                             "rfilter", "texture", "volume"};
     return kNames[object.index()];
   }
 };
@@ -96,6 +98,12 @@ class Properties {
   bool has(const std::string& name) const {
     remember(name);
     return lookup(name) != nullptr;
+  }
+
+  /// As a value or as a nested object.
+  bool given(const std::string& name) const {
+    return has(name) || std::any_of(objects_.begin(), objects_.end(),
+                                    [&](const NestedObject& o) { return o.name == name; });
   }
 
   bool boolean(const std::string& name, bool fallback) {
@@ -147,6 +155,20 @@ class Properties {
         fail(name, "\"" + name + "\" must " +
                        (max == kInfinity ? "not be negative" : "lie between 0 and 1"));
     return result;
+  }
+  /// The same, or a texture.
+  Textured<RGB> textured_color(const std::string& name, const RGB& fallback,
+                               double max = kInfinity) {
+    if (const auto texture = take_texture(name, 0, max)) return texture;
+    return color(name, fallback, max);
+  }
+  /// A number or a texture, in [min, max].
+  Textured<double> textured_number(const std::string& name, double fallback, double min = 0,
+                                   double max = kInfinity) {
+    if (const auto texture = take_texture(name, min, max)) return texture;
+    const double value = number(name, fallback);
+    if (!(value >= min && value <= max)) fail(name, "\"" + name + "\" " + must_lie(min, max));
+    return value;
   }
   /// A point or a vector.
   Vec3 point(const std::string& name, const Vec3& fallback) {
@@ -206,10 +228,12 @@ class Properties {
     return all.empty() ? nullptr : all.front();
   }
 
-  /// Place of a property, or of the whole object if it is not given.
+  /// Place of a property or nested object, or of the whole object if there is none of that name.
   const SourceLocation& where(const std::string& name) const {
-    const Property* p = lookup(name);
-    return p ? p->where : where_;
+    if (const Property* p = lookup(name)) return p->where;
+    for (const NestedObject& o : objects_)
+      if (o.name == name) return o.where;
+    return where_;
   }
   [[noreturn]] void fail(const std::string& name, const std::string& message) const {
     throw Error(ErrorKind::Scene, where(name), message);
@@ -239,6 +263,31 @@ class Properties {
     auto* p = const_cast<Property*>(lookup(name));
     if (p) p->used = true;
     return p;
+  }
+  /// Null if the name is that of a value, or of nothing.
+  std::shared_ptr<const Texture> take_texture(const std::string& name, double min, double max) {
+    remember(name);
+    auto texture = take<Texture>(name);
+    if (!texture) return texture;
+    if (const Property* value = lookup(name))
+      throw Error(ErrorKind::Scene, value->where,
+                  "\"" + name + "\" is given twice: as a value and as a texture");
+    const Texture::Range range = texture->range();
+    if (!(range.least >= min && range.greatest <= max))
+      fail(name, "the values of the texture \"" + name + "\" " + must_lie(min, max) +
+                     "; it has some from " + std::to_string(range.least) + " to " +
+                     std::to_string(range.greatest));
+    return texture;
+  }
+  static std::string must_lie(double min, double max) {
+    const auto text = [](double x) {
+      std::string s = std::to_string(x);
+      s.erase(s.find_last_not_of('0') + 1);
+      return s.back() == '.' ? s.substr(0, s.size() - 1) : s;
+    };
+    if (max == kInfinity)
+      return min == 0 ? "must not be negative" : "must not be less than " + text(min);
+    return "must lie between " + text(min) + " and " + text(max);
   }
   template <class T>
   const T& get(const Property& p, const char* expected) const {

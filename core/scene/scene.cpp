@@ -41,7 +41,7 @@ Scene::Scene(SceneDescription description, bool strict) : description_(std::move
   for (std::uint32_t i = 0; i < description_.surfaces.size(); ++i) {
     const Surface& s = description_.surfaces[i];
     shapes.push_back(s.shape.get());
-    has_null_surfaces_ |= !s.bsdf->has_smooth() && !s.bsdf->has_dirac();
+    has_null_surfaces_ |= s.bsdf->has_passage();
     if (!s.medium_boundary) continue;
     boundaries.push_back(s.shape.get());
     boundary_shapes_.push_back(i);

@@ -61,7 +61,10 @@ class Scene {
   const Surface& surface(std::uint32_t shape) const { return description_.surfaces[shape]; }
   const std::vector<Surface>& surfaces() const { return description_.surfaces; }
   SurfacePoint surface_point(const Hit& hit) const {
-    return surface(hit.id.shape).shape->surface_point(hit.id.primitive, hit.local);
+    const Shape& shape = *surface(hit.id.shape).shape;
+    SurfacePoint x = shape.surface_point(hit.id.primitive, hit.local);
+    x.shape = &shape;
+    return x;
   }
 
   const Sensor& sensor() const { return *description_.sensor; }
@@ -75,6 +78,7 @@ class Scene {
   /// between the boundaries which holds it.
   const Medium* medium_at(const Vec3& p, PrimitiveId on = kNoPrimitive) const;
   bool has_media() const { return !media_.empty(); }
+  /// Surfaces that light can pass straight through.
   bool has_null_surfaces() const { return has_null_surfaces_; }
 
   // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen in

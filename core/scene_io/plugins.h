@@ -30,8 +30,8 @@ struct FileContext {
 };
 
 using ShapeContext = FileContext;
-/// What emitters need: files, whose bytes go into the hash, and a reader of pictures.
-struct EmitterContext {
+/// What emitters and textures need: files, whose bytes go into the hash, and a reader of pictures.
+struct PictureContext {
   const FileResolver& files;
   ContentHash& hash;
   const ImageReader& read_image;
@@ -39,8 +39,10 @@ struct EmitterContext {
 
 const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins();
 const PluginTable<std::shared_ptr<const Bsdf>(Properties&)>& bsdf_plugins();
+const PluginTable<std::shared_ptr<const Texture>(Properties&, const PictureContext&)>&
+texture_plugins();
 /// Emitters that stand alone; "area" needs a shape.
-const PluginTable<std::shared_ptr<Emitter>(Properties&, const EmitterContext&)>& emitter_plugins();
+const PluginTable<std::shared_ptr<Emitter>(Properties&, const PictureContext&)>& emitter_plugins();
 const PluginTable<std::shared_ptr<Emitter>(Properties&, std::shared_ptr<const Shape>)>&
 surface_emitter_plugins();
 const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)>&

@@ -10,7 +10,7 @@ namespace {
 
 constexpr std::uint64_t kMaxPictureBytes = std::uint64_t{4} << 30;
 
-std::shared_ptr<Emitter> point(Properties& p, const EmitterContext&) {
+std::shared_ptr<Emitter> point(Properties& p, const PictureContext&) {
   if (p.has("position") && p.has("to_world"))
     p.fail("position", "give either \"position\" or \"to_world\"");
   const Vec3 position =
@@ -19,11 +19,11 @@ std::shared_ptr<Emitter> point(Properties& p, const EmitterContext&) {
   return make_point_emitter(position, p.color("intensity", RGB(1)));
 }
 
-std::shared_ptr<Emitter> constant(Properties& p, const EmitterContext&) {
+std::shared_ptr<Emitter> constant(Properties& p, const PictureContext&) {
   return make_constant_emitter(p.color("radiance", RGB(1)));
 }
 
-std::shared_ptr<Emitter> directional(Properties& p, const EmitterContext&) {
+std::shared_ptr<Emitter> directional(Properties& p, const PictureContext&) {
   if (p.has("direction") && p.has("to_world"))
     p.fail("direction", "give either \"direction\" or \"to_world\"");
   const Vec3 z(0, 0, 1);
@@ -33,7 +33,7 @@ std::shared_ptr<Emitter> directional(Properties& p, const EmitterContext&) {
   return make_directional_emitter(direction, p.color("irradiance", RGB(1)));
 }
 
-std::shared_ptr<Emitter> spot(Properties& p, const EmitterContext&) {
+std::shared_ptr<Emitter> spot(Properties& p, const PictureContext&) {
   const Transform to_world = p.transform("to_world");
   const double cutoff = p.number("cutoff_angle", 20);
   const double beam = p.number("beam_width", 0.75 * cutoff);
@@ -47,7 +47,7 @@ float decode_srgb(float x) {
   return x <= 0.04045f ? x / 12.92f : std::pow((x + 0.055f) / 1.055f, 2.4f);
 }
 
-Image read_picture(Properties& p, const EmitterContext& context) {
+Image read_picture(Properties& p, const PictureContext& context) {
   const std::string name = p.required_string("filename");
   const SourceLocation& where = p.where("filename");
   if (!context.read_image) p.fail("filename", "this program reads no pictures");
@@ -79,7 +79,7 @@ void clamp_negative(Properties& p, Image& image) {
     p.warn("filename", std::to_string(count) + " negative values of the picture count as zero");
 }
 
-std::shared_ptr<Emitter> envmap(Properties& p, const EmitterContext& context) {
+std::shared_ptr<Emitter> envmap(Properties& p, const PictureContext& context) {
   Image image = read_picture(p, context);
   clamp_negative(p, image);
   const double scale = p.positive_number("scale", 1);
@@ -93,8 +93,8 @@ std::shared_ptr<Emitter> area(Properties& p, std::shared_ptr<const Shape> shape)
 
 }  // namespace
 
-const PluginTable<std::shared_ptr<Emitter>(Properties&, const EmitterContext&)>& emitter_plugins() {
-  static const PluginTable<std::shared_ptr<Emitter>(Properties&, const EmitterContext&)> table{
+const PluginTable<std::shared_ptr<Emitter>(Properties&, const PictureContext&)>& emitter_plugins() {
+  static const PluginTable<std::shared_ptr<Emitter>(Properties&, const PictureContext&)> table{
       {"point", point},
       {"constant", constant},
       {"directional", directional},

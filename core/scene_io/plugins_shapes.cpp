@@ -21,7 +21,8 @@ std::shared_ptr<const Shape> sphere(Properties& p, const ShapeContext&) {
     p.fail("to_world", "a sphere's \"to_world\" must scale alike in all directions");
   const bool flip = p.boolean("flip_normals", false);
   // A mirror image shows the inside, as in Mitsuba.
-  return make_sphere(to_world.point(center), scale * radius, flip != to_world.flips_orientation());
+  return make_sphere(to_world.point(center), scale * radius, flip != to_world.flips_orientation(),
+                     scale * Mat3(to_world.inverse_matrix()));
 }
 
 std::shared_ptr<const Shape> rectangle(Properties& p, const ShapeContext&) {

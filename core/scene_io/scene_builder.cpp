@@ -20,7 +20,7 @@ constexpr std::size_t kMaxInstancedShapes = 1 << 20;
 const std::vector<std::string>& object_tags() {
   static const std::vector<std::string> tags{"bsdf",   "emitter", "film",    "integrator",
                                              "medium", "phase",   "rfilter", "sampler",
-                                             "sensor", "shape",   "volume"};
+                                             "sensor", "shape",   "texture", "volume"};
   return tags;
 }
 
@@ -29,7 +29,8 @@ bool is_object_tag(const std::string& tag) {
 }
 
 bool is_shared_tag(const std::string& tag) {
-  return tag == "bsdf" || tag == "medium" || tag == "phase" || tag == "rfilter" || tag == "volume";
+  return tag == "bsdf" || tag == "medium" || tag == "phase" || tag == "rfilter" ||
+         tag == "texture" || tag == "volume";
 }
 
 /// The constructor that a table has for a plugin.
@@ -164,10 +165,8 @@ void SceneBuilder::read_child(Object& object, const XmlNode& child) {
   if (!reference && !is_object_tag(child.tag)) {
     std::vector<std::string> known = value_tags();
     known.insert(known.end(), object_tags().begin(), object_tags().end());
-    const bool later = child.tag == "texture";
     throw Error(ErrorKind::Scene, child.where(),
-                later ? "<" + child.tag + "> is not supported yet"
-                      : "unknown element <" + child.tag + ">" + suggestion(child.tag, known));
+                "unknown element <" + child.tag + ">" + suggestion(child.tag, known));
   }
   const XmlNode& node = reference ? target(child) : child;
   const std::string* name = child.attribute("name");
@@ -201,6 +200,7 @@ void SceneBuilder::check_plugin(const XmlNode& node) const {
   if (node.tag == "medium") return check(media_.media);
   if (node.tag == "phase") return check(media_.phases);
   if (node.tag == "rfilter") return check(filter_plugins());
+  if (node.tag == "texture") return check(texture_plugins());
   if (node.tag == "volume") return check(volume_plugins());
 }
 
@@ -209,6 +209,9 @@ NestedObject::Object SceneBuilder::make_shared_object(Object& object) {
   if (p.kind() == "bsdf") return construct(bsdf_plugins(), p);
   if (p.kind() == "medium") return construct(media_.media, p);
   if (p.kind() == "phase") return construct(media_.phases, p);
+  if (p.kind() == "texture")
+    return construct(texture_plugins(), p,
+                     PictureContext{files_, object.hash, options_.read_image});
   if (p.kind() == "volume") return construct(volume_plugins(), p, FileContext{files_, object.hash});
   return construct(filter_plugins(), p);
 }
@@ -391,7 +394,7 @@ void SceneBuilder::emitter(const XmlNode& node) {
     throw Error(ErrorKind::Scene, node.where(),
                 "the emitter " + quote(plugin) + " must stand inside a shape");
   scene_.emitters.push_back(construct(emitter_plugins(), object.properties,
-                                      EmitterContext{files_, object.hash, options_.read_image}));
+                                      PictureContext{files_, object.hash, options_.read_image}));
   finish(object);
   hash_.add(object.hash.value());
 }
@@ -410,8 +413,6 @@ void SceneBuilder::top_level(const XmlNode& node) {
                                         "\" is part of the scene already");
   else if (is_value_tag(node.tag) || node.tag == "film" || node.tag == "sampler")
     diagnostics_.warn(node.where(), "<" + node.tag + "> directly in <scene> has no effect");
-  else if (node.tag == "texture")
-    throw Error(ErrorKind::Scene, node.where(), "<" + node.tag + "> is not supported yet");
   else if (node.tag != "emitter")
     throw Error(ErrorKind::Scene, node.where(),
                 "unknown element <" + node.tag + ">" + suggestion(node.tag, object_tags()));

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mlt/mutations/retrace.h"
 
+#include <limits>
+
 namespace fogbow {
 
 namespace {
@@ -29,8 +31,11 @@ std::optional<Rejection> follow(const Scene& scene, const Vertex& start, const V
     next = *moved;
     return std::nullopt;
   }
+  // As many passages as before, or the way back would stop elsewhere; all of them to infinity.
+  const std::int64_t passages =
+      next.infinite() ? std::numeric_limits<std::int64_t>::max() : edge.passages;
   Vertex found;
-  const ExtendResult result = extend_to_surface(scene, start, w, found, edge, near, far);
+  const ExtendResult result = extend_to_surface(scene, start, w, found, edge, near, far, passages);
   if (next.infinite()) {
     if (result == ExtendResult::Reached) return Rejection::Occluded;
     found.kind = VertexKind::InfiniteLight;
@@ -39,6 +44,8 @@ std::optional<Rejection> follow(const Scene& scene, const Vertex& start, const V
     edge.length = kInfinity;
   } else if (result != ExtendResult::Reached) {
     return Rejection::MissedScene;
+  } else if (edge.passages != passages) {
+    return Rejection::WrongConfiguration;
   }
   found.degenerate = next.degenerate;
   next = found;

@@ -8,6 +8,7 @@
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/emitters.h"
 #include "core/scene/sensors.h"
+#include "core/scene/textures.h"
 #include "media/media.h"
 #include "media/mie.h"
 
@@ -311,6 +312,29 @@ SceneDescription sun_and_can() {
   return b.done();
 }
 
+/// Vertices that scatter specularly or not, textures, and surfaces that light passes in part: a
+/// pane, and a box of fog with holes in its walls.
+SceneDescription coatings() {
+  Builder b;
+  const auto haze = fog(RGB(0.3), RGB(0.9));
+  const auto board =
+      make_checkerboard_texture(RGB(0.8, 0.6, 0.4), RGB(0.2), Transform::scale(Vec3(4, 4, 1)));
+  b.camera_medium(haze).ceiling_light(0.3, RGB(10));
+  b.floor(make_twosided(make_plastic(1.5, true, board)));
+  b.add(sphere(Vec3(-0.6, -0.5, 0), 0.45),
+        make_rough_plastic({MicrofacetKind::Ggx, 0.25, 0.25}, 1.5, false, RGB(0.6, 0.3, 0.2)));
+  b.add(
+      sphere(Vec3(0, 0.3, -0.3), 0.5),
+      make_blend(make_conductor(RGB(0), RGB(1), RGB(0.9, 0.8, 0.7)), make_diffuse(RGB(0.5)), 0.25));
+  b.bounds(make_cube(Transform::translate(Vec3(0.6, -0.5, 0.1)) * Transform::scale(Vec3(0.4))),
+           make_mask(gray(), 0.5), fog(RGB(2, 1.5, 1), RGB(0.8)), haze);
+  b.add(make_rectangle(Transform::translate(Vec3(-0.2, 0, 1)) *
+                       Transform::rotate(Vec3(0, 1, 0), 20) * Transform::scale(Vec3(0.6))),
+        make_thin_dielectric(1.5, RGB(1), RGB(0.9, 1, 0.8)));
+  b.light(sphere(Vec3(-1.2, 0.4, -1.2), 0.3), RGB(4, 3, 2));  // seen through the pane in part
+  return b.done();
+}
+
 }  // namespace
 
 const std::vector<TestScene>& test_scenes() {
@@ -327,7 +351,8 @@ const std::vector<TestScene>& test_scenes() {
                                                 {"droplets", droplets},
                                                 {"sky-lens", sky_lens},
                                                 {"two-kinds-of-glass", two_kinds_of_glass},
-                                                {"sun-and-can", sun_and_can}};
+                                                {"sun-and-can", sun_and_can},
+                                                {"coatings", coatings}};
   return scenes;
 }
 

@@ -27,7 +27,7 @@ namespace {
 class Allocation : public ::testing::TestWithParam<TestScene> {};
 
 TEST_P(Allocation, NoneInTheSteadyState) {
-  constexpr int kWarmUp = 20000, kSteps = 20000;
+  constexpr int kWarmUp = 60000, kSteps = 20000;  // walks must have been tried
   const Scene scene(GetParam().make());
   const PathPopulation population(scene, 7, suite_seed());
   const auto table = make_path_mutations(default_mutation_weights(), population.techniques(),

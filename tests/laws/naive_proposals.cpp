@@ -3,6 +3,7 @@
 
 #include <algorithm>
 #include <functional>
+#include <limits>
 
 namespace fogbow::testing {
 
@@ -41,7 +42,11 @@ LastRay trace(const Scene& scene, const Path& path, const Stretch& s, const Vec3
   for (int i = s.from + s.step(); i != s.to; i += s.step()) {
     Vertex next;
     Edge edge;
-    const bool reached = extend_to_surface(scene, x, w, next, edge) == ExtendResult::Reached;
+    // Through as many surfaces as the path's own edge.
+    const int link = std::min(i, i - s.step());
+    const auto own = connect(scene, path[link], path[link + 1]);
+    const bool reached = extend_to_surface(scene, x, w, next, edge, 0, kInfinity, own->passages) ==
+                         ExtendResult::Reached;
     const auto out =
         reached ? specular_direction(scene, next, -w, transmits(path, i)) : std::nullopt;
     if (!out || next.id.shape != path[i].id.shape) return {Vec3(std::nan("")), Vec3(0)};
@@ -155,7 +160,8 @@ struct Line {
     Vertex end;
     Edge edge;
     const bool eye = start.kind == VertexKind::Sensor;
-    extend_to_surface(scene, start, w, end, edge, eye ? scene.sensor().near_distance(w) : 0.0);
+    extend_to_surface(scene, start, w, end, edge, eye ? scene.sensor().near_distance(w) : 0.0,
+                      kInfinity, std::numeric_limits<std::int64_t>::max());
     wall = edge.length;
     tau_wall = edge.tau_q;
   }

@@ -8,7 +8,7 @@ namespace {
 
 class Conductor final : public ReflectingBsdf {
  public:
-  Conductor(const RGB& eta, const RGB& k, const RGB& reflectance)
+  Conductor(const Textured<RGB>& eta, const Textured<RGB>& k, const Textured<RGB>& reflectance)
       : index_(eta, k), tint_(checked_reflectance(reflectance)) {}
 
   bool has_smooth() const override { return false; }
@@ -16,9 +16,9 @@ class Conductor final : public ReflectingBsdf {
   RGB f_s(const SurfacePoint&, const Vec3&, const Vec3&) const override { return RGB(0); }
   double pdf_sigma(const SurfacePoint&, const Vec3&, const Vec3&) const override { return 0; }
 
-  RGB f_dirac(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const override {
+  RGB f_dirac(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const override {
     if (!(w_light.z > 0 && w_eye.z > 0)) return RGB(0);
-    return tint_ * fresnel_conductor(w_light.z, index_);
+    return tint_(x) * index_.reflectance(x, w_light.z);
   }
   double pdf_dirac(const SurfacePoint&, const Vec3& from, const Vec3& to) const override {
     return from.z > 0 && to.z > 0 ? to.z : 0.0;
@@ -34,18 +34,18 @@ class Conductor final : public ReflectingBsdf {
     return auxiliary;
   }
 
-  RGB albedo(const SurfacePoint&) const override { return tint_ * fresnel_conductor(1, index_); }
+  RGB albedo(const SurfacePoint& x) const override { return tint_(x) * index_.reflectance(x, 1); }
   const char* name() const override { return "conductor"; }
 
  private:
   ComplexIndex index_;
-  RGB tint_;
+  Textured<RGB> tint_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Bsdf> make_conductor(const RGB& eta, const RGB& k,
-                                           const RGB& specular_reflectance) {
+std::shared_ptr<const Bsdf> make_conductor(const Textured<RGB>& eta, const Textured<RGB>& k,
+                                           const Textured<RGB>& specular_reflectance) {
   return std::make_shared<Conductor>(eta, k, specular_reflectance);
 }
 

@@ -8,12 +8,13 @@ namespace {
 
 class Dielectric final : public Bsdf {
  public:
-  Dielectric(double eta, const RGB& reflectance, const RGB& transmittance)
+  Dielectric(double eta, const Textured<RGB>& reflectance, const Textured<RGB>& transmittance)
       : eta_(eta),
         reflectance_(checked_reflectance(reflectance)),
         transmittance_(checked_reflectance(transmittance)),
-        mean_reflectance_(mean(reflectance)),
-        mean_transmittance_(mean(transmittance)) {
+        mean_reflectance_(mean(reflectance.mean())),
+        mean_transmittance_(mean(transmittance.mean())),
+        constant_(reflectance.constant() && transmittance.constant()) {
     if (!(eta > 0 && std::isfinite(eta)))
       throw std::domain_error("a relative index of refraction must be positive and finite");
   }
@@ -23,13 +24,13 @@ class Dielectric final : public Bsdf {
   RGB f_s(const SurfacePoint&, const Vec3&, const Vec3&) const override { return RGB(0); }
   double pdf_sigma(const SurfacePoint&, const Vec3&, const Vec3&) const override { return 0; }
 
-  RGB f_dirac(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const override {
+  RGB f_dirac(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const override {
     const Refraction r = refraction(w_light, w_eye);
-    const RGB C = w_light.z * w_eye.z > 0 ? r.F * reflectance_ : r.T * transmittance_;
+    const RGB C = w_light.z * w_eye.z > 0 ? r.F * reflectance_(x) : r.T * transmittance_(x);
     return C * sqr(n(w_eye));
   }
-  double pdf_dirac(const SurfacePoint&, const Vec3& from, const Vec3& to) const override {
-    const auto [reflection, transmission] = probabilities(refraction(from, to));
+  double pdf_dirac(const SurfacePoint& x, const Vec3& from, const Vec3& to) const override {
+    const auto [reflection, transmission] = probabilities(x, refraction(from, to));
     const double P = from.z * to.z > 0 ? reflection : transmission;
     return P * sqr(n(to)) * std::fabs(to.z);
   }
@@ -38,23 +39,25 @@ class Dielectric final : public Bsdf {
                                    const Vec3& u) const override {
     if (from.z == 0) return std::nullopt;
     const Refraction r = refraction(from);
-    const auto [reflection, transmission] = probabilities(r);
+    const auto [reflection, transmission] = probabilities(x, r);
     if (u.x < reflection) return answer(x, from, reflect_z(from));
     if (!(transmission > 0)) return std::nullopt;
     const double scale = 1 / relative_eta(from);
     const Vec3 to(-scale * from.x, -scale * from.y, from.z > 0 ? -r.cos_t : r.cos_t);
     return answer(x, from, to);
   }
-  std::optional<Vec3> invert(const SurfacePoint&, const Vec3& from, const Vec3& to, bool dirac,
+  std::optional<Vec3> invert(const SurfacePoint& x, const Vec3& from, const Vec3& to, bool dirac,
                              const Vec3& auxiliary) const override {
     if (!dirac) return std::nullopt;
-    const auto u = invert_event(probabilities(refraction(from)), from.z * to.z > 0, auxiliary.x);
+    const auto u = invert_event(probabilities(x, refraction(from)), from.z * to.z > 0, auxiliary.x);
     if (!u) return std::nullopt;
     return Vec3(*u, auxiliary.y, auxiliary.z);
   }
 
   double eta() const override { return eta_; }
-  RGB albedo(const SurfacePoint&) const override { return glm::max(reflectance_, transmittance_); }
+  RGB albedo(const SurfacePoint& x) const override {
+    return glm::max(reflectance_(x), transmittance_(x));
+  }
   const char* name() const override { return "dielectric"; }
 
  private:
@@ -72,19 +75,22 @@ class Dielectric final : public Bsdf {
   BsdfSample answer(const SurfacePoint& x, const Vec3& from, const Vec3& to) const {
     return {to, true, pdf_dirac(x, from, to)};
   }
-  EventProbabilities probabilities(const Refraction& r) const {
-    return event_probabilities(r, mean_reflectance_, mean_transmittance_);
+  EventProbabilities probabilities(const SurfacePoint& x, const Refraction& r) const {
+    if (constant_) [[likely]]
+      return event_probabilities(r, mean_reflectance_, mean_transmittance_);
+    return event_probabilities(r, mean(reflectance_(x)), mean(transmittance_(x)));
   }
 
   double eta_;
-  RGB reflectance_, transmittance_;
+  Textured<RGB> reflectance_, transmittance_;
   double mean_reflectance_, mean_transmittance_;
+  bool constant_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Bsdf> make_dielectric(double eta, const RGB& specular_reflectance,
-                                            const RGB& specular_transmittance) {
+std::shared_ptr<const Bsdf> make_dielectric(double eta, const Textured<RGB>& specular_reflectance,
+                                            const Textured<RGB>& specular_transmittance) {
   return std::make_shared<Dielectric>(eta, specular_reflectance, specular_transmittance);
 }
 

@@ -8,12 +8,13 @@ namespace {
 
 class Diffuse final : public ReflectingBsdf {
  public:
-  explicit Diffuse(const RGB& reflectance) : reflectance_(checked_reflectance(reflectance)) {}
+  explicit Diffuse(const Textured<RGB>& reflectance)
+      : reflectance_(checked_reflectance(reflectance)) {}
 
   bool has_smooth() const override { return true; }
 
-  RGB f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const override {
-    return w_light.z > 0 && w_eye.z > 0 ? reflectance_ * kInvPi : RGB(0);
+  RGB f_s(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const override {
+    return w_light.z > 0 && w_eye.z > 0 ? reflectance_(x) * kInvPi : RGB(0);
   }
   double pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const override {
     return from.z > 0 ? warp::pdf_cosine_hemisphere(to) : 0.0;
@@ -32,16 +33,16 @@ class Diffuse final : public ReflectingBsdf {
     return Vec3(auxiliary.x, u.x, u.y);
   }
 
-  RGB albedo(const SurfacePoint&) const override { return reflectance_; }
+  RGB albedo(const SurfacePoint& x) const override { return reflectance_(x); }
   const char* name() const override { return "diffuse"; }
 
  private:
-  RGB reflectance_;
+  Textured<RGB> reflectance_;
 };
 
 }  // namespace
 
-std::shared_ptr<const Bsdf> make_diffuse(const RGB& reflectance) {
+std::shared_ptr<const Bsdf> make_diffuse(const Textured<RGB>& reflectance) {
   return std::make_shared<Diffuse>(reflectance);
 }
 

@@ -4,6 +4,7 @@
 
 #include "core/math/vec.h"
 #include "core/math/warp.h"
+#include "core/scene/texture.h"
 
 namespace fogbow {
 
@@ -29,16 +30,31 @@ inline Refraction fresnel_dielectric(double cos_i, double eta) {
   return fresnel_of_pair(cos_i, std::sqrt(q) / eta, eta);
 }
 
+/// Reflectance of a smooth interface for diffuse light: ∫ 2μ F(μ) dμ over cosines μ.
+double diffuse_fresnel(double eta);
+/// Throws std::domain_error unless positive and finite.
+double checked_coat_index(double eta);
+/// What a diffuse base sends through a coat, 1/sr, but for the transmittances on the way in and
+/// out; `internal` is the coat's reflectance for diffuse light from inside. Reflections between the
+/// two are tinted by the base every time if `nonlinear`, else not at all.
+inline RGB coated_base(const RGB& base, bool nonlinear, double internal, double eta) {
+  const RGB lost = internal * (nonlinear ? base : RGB(1));
+  return kInvPi / sqr(eta) * base / (RGB(1) - lost);
+}
+
 /// Reflectance of a conductor of complex index eta + i k ≠ 0, unpolarized.
 double fresnel_conductor(double cos_i, double eta, double k);
 
 /// The complex index of a conductor, channel by channel. Throws std::domain_error where a part is
-/// negative or not finite, or both vanish.
-struct ComplexIndex {
-  RGB eta, k;
-  ComplexIndex(const RGB& eta_, const RGB& k_);
+/// negative or not finite, or both vanish (of textures, both can).
+class ComplexIndex {
+ public:
+  ComplexIndex(const Textured<RGB>& eta, const Textured<RGB>& k);
+  RGB reflectance(const SurfacePoint& x, double cos_i) const;
+
+ private:
+  Textured<RGB> eta_, k_;
 };
-RGB fresnel_conductor(double cos_i, const ComplexIndex& index);
 
 /// Probabilities of the two events where F and T are weighted by their tints' means; zero where
 /// both are black.

@@ -97,13 +97,23 @@ double VisibleSlope::sample(double u) const {
 
 }  // namespace
 
-MicrofacetDistribution::MicrofacetDistribution(const RoughnessSettings& roughness)
-    : kind_(roughness.kind),
-      alpha_(std::max(roughness.alpha_u, kLeastAlpha), std::max(roughness.alpha_v, kLeastAlpha)),
+MicrofacetDistribution::MicrofacetDistribution(MicrofacetKind kind, double alpha_u, double alpha_v)
+    : kind_(kind),
+      alpha_(std::max(alpha_u, kLeastAlpha), std::max(alpha_v, kLeastAlpha)),
       normalization_(kInvPi / (alpha_.x * alpha_.y)) {
-  for (const double a : {roughness.alpha_u, roughness.alpha_v})
+  for (const double a : {alpha_u, alpha_v})
     if (!(a >= 0 && std::isfinite(a)))
       throw std::domain_error("roughness must be finite and not negative");
+}
+
+TexturedFacets::TexturedFacets(const RoughnessSettings& roughness)
+    : settings_(roughness),
+      constant_(roughness.kind, roughness.alpha_u.mean(), roughness.alpha_v.mean()),
+      varies_(!roughness.alpha_u.constant() || !roughness.alpha_v.constant()) {
+  const Texture::Range u = roughness.alpha_u.range(), v = roughness.alpha_v.range();
+  // Throws where the constructor of a distribution could.
+  const MicrofacetDistribution least(roughness.kind, u.least, v.least);
+  roughness_ = MicrofacetDistribution(roughness.kind, u.greatest, v.greatest).roughness();
 }
 
 double MicrofacetDistribution::D(const Vec3& h) const {

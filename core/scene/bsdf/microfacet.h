@@ -13,7 +13,7 @@ class MicrofacetDistribution {
  public:
   /// Roughness below 1e-4 is taken as 1e-4, as in Mitsuba 3. Throws std::domain_error if negative
   /// or not finite.
-  explicit MicrofacetDistribution(const RoughnessSettings& roughness);
+  MicrofacetDistribution(MicrofacetKind kind, double alpha_u, double alpha_v);
 
   /// Density of the microfacets' area by normal: ∫ D(h) h_z dσ(h) = 1.
   double D(const Vec3& h) const;
@@ -37,6 +37,26 @@ class MicrofacetDistribution {
   MicrofacetKind kind_;
   Vec2 alpha_;
   double normalization_;  ///< 1/(π α_u α_v)
+};
+
+/// The same where roughness may be textured.
+class TexturedFacets {
+ public:
+  explicit TexturedFacets(const RoughnessSettings& roughness);
+
+  MicrofacetDistribution operator()(const SurfacePoint& x) const {
+    if (!varies_) [[likely]]
+      return constant_;
+    return {settings_.kind, settings_.alpha_u(x), settings_.alpha_v(x)};
+  }
+  /// The largest α that there is.
+  double roughness() const { return roughness_; }
+
+ private:
+  RoughnessSettings settings_;
+  MicrofacetDistribution constant_;
+  bool varies_;
+  double roughness_;
 };
 
 }  // namespace fogbow

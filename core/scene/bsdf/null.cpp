@@ -7,7 +7,8 @@ namespace {
 class Null final : public Bsdf {
  public:
   bool has_smooth() const override { return false; }
-  double opacity(const SurfacePoint&) const override { return 0; }
+  bool has_passage() const override { return true; }
+  RGB passage(const SurfacePoint&, const Vec3&) const override { return RGB(1); }
   RGB f_s(const SurfacePoint&, const Vec3&, const Vec3&) const override { return RGB(0); }
   double pdf_sigma(const SurfacePoint&, const Vec3&, const Vec3&) const override { return 0; }
   std::optional<BsdfSample> sample(const SurfacePoint&, const Vec3&, const Vec3&) const override {

@@ -10,14 +10,15 @@ namespace {
 /// Refraction at rough interfaces (Walter et al. 2007).
 class RoughDielectric final : public Bsdf {
  public:
-  RoughDielectric(const RoughnessSettings& roughness, double eta, const RGB& reflectance,
-                  const RGB& transmittance)
+  RoughDielectric(const RoughnessSettings& roughness, double eta, const Textured<RGB>& reflectance,
+                  const Textured<RGB>& transmittance)
       : facets_(roughness),
         eta_(eta),
         reflectance_(checked_reflectance(reflectance)),
         transmittance_(checked_reflectance(transmittance)),
-        mean_reflectance_(mean(reflectance)),
-        mean_transmittance_(mean(transmittance)) {
+        mean_reflectance_(mean(reflectance.mean())),
+        mean_transmittance_(mean(transmittance.mean())),
+        constant_(reflectance.constant() && transmittance.constant()) {
     if (!(eta > 0 && std::isfinite(eta) && eta != 1))
       throw std::domain_error(
           "the relative index of refraction of a rough dielectric must be positive, finite and "
@@ -35,7 +36,9 @@ class RoughDielectric final : public Bsdf {
 
   double eta() const override { return eta_; }
   double roughness() const override { return facets_.roughness(); }
-  RGB albedo(const SurfacePoint&) const override { return glm::max(reflectance_, transmittance_); }
+  RGB albedo(const SurfacePoint& x) const override {
+    return glm::max(reflectance_(x), transmittance_(x));
+  }
   const char* name() const override { return "roughdielectric"; }
 
  private:
@@ -51,14 +54,17 @@ class RoughDielectric final : public Bsdf {
   double n(const Vec3& w) const { return w.z > 0 ? 1.0 : eta_; }
   double relative_eta(const Vec3& w) const { return w.z > 0 ? eta_ : 1 / eta_; }
   std::optional<Facet> facet(const Vec3& a, const Vec3& b) const;
-  EventProbabilities probabilities(const Refraction& r) const {
-    return event_probabilities(r, mean_reflectance_, mean_transmittance_);
+  EventProbabilities probabilities(const SurfacePoint& x, const Refraction& r) const {
+    if (constant_) [[likely]]
+      return event_probabilities(r, mean_reflectance_, mean_transmittance_);
+    return event_probabilities(r, mean(reflectance_(x)), mean(transmittance_(x)));
   }
 
-  MicrofacetDistribution facets_;
+  TexturedFacets facets_;
   double eta_;
-  RGB reflectance_, transmittance_;
+  Textured<RGB> reflectance_, transmittance_;
   double mean_reflectance_, mean_transmittance_;
+  bool constant_;
 };
 
 std::optional<RoughDielectric::Facet> RoughDielectric::facet(const Vec3& a, const Vec3& b) const {
@@ -78,22 +84,24 @@ std::optional<RoughDielectric::Facet> RoughDielectric::facet(const Vec3& a, cons
       reflects, reflects ? fresnel_dielectric(cos_a, eta) : fresnel_of_pair(cos_a, cos_b, eta)};
 }
 
-RGB RoughDielectric::f_s(const SurfacePoint&, const Vec3& w_light, const Vec3& w_eye) const {
+RGB RoughDielectric::f_s(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const {
   const auto m = facet(w_light, w_eye);
   if (!m) return RGB(0);
+  const MicrofacetDistribution facets = facets_(x);
   const double DG =
-      facets_.D(m->h) * facets_.G1(w_light) * facets_.G1(w_eye) / std::fabs(w_light.z * w_eye.z);
-  if (m->reflects) return reflectance_ * (m->fresnel.F * DG * 0.25);  // eq. 20
-  return transmittance_ *
+      facets.D(m->h) * facets.G1(w_light) * facets.G1(w_eye) / std::fabs(w_light.z * w_eye.z);
+  if (m->reflects) return reflectance_(x) * (m->fresnel.F * DG * 0.25);  // eq. 20
+  return transmittance_(x) *
          (m->fresnel.T * DG * m->cos_a * m->cos_b * sqr(n(w_eye)) / m->length2);  // eq. 21
 }
 
-double RoughDielectric::pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const {
+double RoughDielectric::pdf_sigma(const SurfacePoint& x, const Vec3& from, const Vec3& to) const {
   const auto m = facet(from, to);
   if (!m) return 0;
-  const double visible = facets_.D(m->h) * facets_.G1(from) / std::fabs(from.z);  // over cos_a
+  const MicrofacetDistribution facets = facets_(x);
+  const double visible = facets.D(m->h) * facets.G1(from) / std::fabs(from.z);  // over cos_a
   const double jacobian = m->reflects ? 0.25 : m->cos_a * m->cos_b * sqr(n(to)) / m->length2;
-  const auto [reflection, transmission] = probabilities(m->fresnel);
+  const auto [reflection, transmission] = probabilities(x, m->fresnel);
   return (m->reflects ? reflection : transmission) * visible * jacobian;
 }
 
@@ -102,11 +110,11 @@ std::optional<BsdfSample> RoughDielectric::sample(const SurfacePoint& x, const V
   if (from.z == 0) return std::nullopt;
   // From below, facets look as from above through a reflection at the origin.
   const double side = from.z > 0 ? 1.0 : -1.0;
-  const Vec3 h = side * facets_.sample_visible(side * from, {u.y, u.z});
+  const Vec3 h = side * facets_(x).sample_visible(side * from, {u.y, u.z});
   const double cos_from = dot(from, h);
   const double eta = relative_eta(from);
   const Refraction r = fresnel_dielectric(cos_from, eta);
-  const bool reflects = u.x < probabilities(r).reflection;
+  const bool reflects = u.x < probabilities(x, r).reflection;
   const Vec3 to = reflects ? 2 * cos_from * h - from : (cos_from / eta - r.cos_t) * h - from / eta;
   if ((to.z * from.z > 0) != reflects) return std::nullopt;
   const double pdf = pdf_sigma(x, from, to);
@@ -118,18 +126,18 @@ std::optional<Vec3> RoughDielectric::invert(const SurfacePoint& x, const Vec3& f
                                             bool dirac, const Vec3& auxiliary) const {
   if (dirac || !(pdf_sigma(x, from, to) > 0)) return std::nullopt;
   const auto m = facet(from, to);
-  const auto event = invert_event(probabilities(m->fresnel), m->reflects, auxiliary.x);
+  const auto event = invert_event(probabilities(x, m->fresnel), m->reflects, auxiliary.x);
   if (!event) return std::nullopt;
   const double side = from.z > 0 ? 1.0 : -1.0;
-  const Vec2 u = facets_.invert_visible(side * from, m->h);
+  const Vec2 u = facets_(x).invert_visible(side * from, m->h);
   return Vec3(*event, u.x, u.y);
 }
 
 }  // namespace
 
 std::shared_ptr<const Bsdf> make_rough_dielectric(const RoughnessSettings& roughness, double eta,
-                                                  const RGB& specular_reflectance,
-                                                  const RGB& specular_transmittance) {
+                                                  const Textured<RGB>& specular_reflectance,
+                                                  const Textured<RGB>& specular_transmittance) {
   return std::make_shared<RoughDielectric>(roughness, eta, specular_reflectance,
                                            specular_transmittance);
 }

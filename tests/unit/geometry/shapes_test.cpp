@@ -3,6 +3,7 @@
 
 #include <map>
 
+#include "core/geometry/accel.h"
 #include "tests/helpers/statistics.h"
 #include "tests/unit/geometry/shape_cases.h"
 
@@ -400,6 +401,38 @@ TEST(Mesh, VertexNormalsAreWeightedByAngle) {
   TriangleMeshData data{{{0, 0, 0}, {1, 0, 0}, {1, 1, 0}, {0, 1, 0}, {0, 0, 1}}, {}, {}, {}};
   data.triangles = {{0, 1, 2}, {0, 2, 3}, {0, 3, 4}, {0, 4, 1}};
   EXPECT_LT(length(vertex_normals(data)[0] - normalize(Vec3(1))), 1e-15);
+}
+
+/// Texture coordinates of Mitsuba 3.9.1: ray_intersect() of each shape alone.
+TEST(TextureCoordinates, AreMitsubas) {
+  const auto expect_uv = [](const Shape& shape, const Vec3& position, const Vec2& uv) {
+    const Vec3 out = 5.0 * normalize(position);
+    const Shape* shapes[] = {&shape};
+    const Accel accel(shapes);
+    const auto hit = accel.intersect(Ray{position + out, -normalize(out), 0, kInfinity});
+    ASSERT_TRUE(hit);
+    const SurfacePoint x = shape.surface_point(hit->id.primitive, hit->local);
+    EXPECT_NEAR(length(x.position - position), 0, 1e-5);
+    EXPECT_NEAR(length(x.uv - uv), 0, 1e-5) << position.x << ' ' << position.y << ' ' << position.z;
+  };
+  const auto cube = make_cube(Transform());
+  expect_uv(*cube, {1, -0.4, 0.6}, {0.3, 0.2});
+  expect_uv(*cube, {-1, -0.4, 0.6}, {0.3, 0.8});
+  expect_uv(*cube, {0.3, 1, 0.6}, {0.35, 0.2});
+  expect_uv(*cube, {0.3, -1, 0.6}, {0.8, 0.65});
+  expect_uv(*cube, {0.3, -0.4, 1}, {0.3, 0.65});
+  expect_uv(*cube, {0.3, -0.4, -1}, {0.7, 0.65});
+  const auto rectangle = make_rectangle(Transform::translate({0, 0, 1}));
+  expect_uv(*rectangle, {-0.5, 0.3, 1}, {0.25, 0.65});
+  const auto sphere = make_sphere(Vec3(0), 1);
+  expect_uv(*sphere, normalize(Vec3(-0.0398964, 0.99741, 0.0598446)), {0.256363, 0.480939});
+  expect_uv(*sphere, normalize(Vec3(0.0399601, -0.999002, 0.01998)), {0.756363, 0.49364});
+  // Rotated by 90° about x, then 30° of it about its own axis, and as a mirror image.
+  const Transform turned = Transform::rotate({1, 0, 0}, 90) * Transform::rotate({0, 0, 1}, 30);
+  expect_uv(*make_sphere(Vec3(0), 1, false, Mat3(turned.inverse_matrix())),
+            normalize(Vec3(0.980589, 0, 0.196077)), {0.948077, 0.5});
+  expect_uv(*make_sphere(Vec3(0), 1, true, Mat3(Transform::scale({-1, 1, 1}).matrix())),
+            normalize(Vec3(0.960777, 0.2, 0.192114)), {0.467336, 0.438466});
 }
 
 }  // namespace

@@ -213,8 +213,8 @@ TEST(BsdfLaws, RoughBecomesSmooth) {
 TEST(BsdfLaws, NullPassesEverything) {
   const auto null = make_null();
   EXPECT_FALSE(null->has_smooth() || null->has_dirac());
-  EXPECT_EQ(null->opacity(kAnyPoint), 0);
-  EXPECT_EQ(make_diffuse(RGB(0.5))->opacity(kAnyPoint), 1);
+  EXPECT_EQ(null->passage(kAnyPoint, direction(1, 0)), RGB(1));
+  EXPECT_EQ(make_diffuse(RGB(0.5))->passage(kAnyPoint, direction(1, 0)), RGB(0));
 }
 
 TEST(BsdfLaws, RefusesWhatMakesNoSense) {

@@ -1,4 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/scene/bsdf/bsdfs.h"
+
 #include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
@@ -166,9 +168,10 @@ TEST(Conductor, IsAMirrorUnlessToldOtherwise) {
                mirror * normal_reflectance(0.2, 3.9));
   expect_equal(reflectance(R"(<float name="eta" value="0.2"/>)"),
                mirror * normal_reflectance(0.2, 1));
-  EXPECT_NE(folder.error(R"(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)")
-                .find("2:24: the conductor \"Au\" is not supported yet; known: \"none\""),
-            std::string::npos);
+  EXPECT_NE(
+      folder.error(R"(<bsdf type="conductor"><string name="material" value="Unobtainium"/></bsdf>)")
+          .find("2:24: no index of refraction is known for \"Unobtainium\"; known: \"none\""),
+      std::string::npos);
   EXPECT_NE(folder
                 .error(R"(<bsdf type="conductor"><string name="material" value="none"/>
       <rgb name="eta" value="1"/></bsdf>)")
@@ -216,7 +219,114 @@ TEST(Rough, DefaultsAndSpellingsOfRoughness) {
 TEST(Null, PassesLight) {
   SceneFolder folder;
   const auto bsdf = load_bsdf(folder, R"(<bsdf type="null"/>)");
-  EXPECT_EQ(bsdf->opacity(SurfacePoint{}), 0);
+  EXPECT_EQ(bsdf->passage(SurfacePoint{}, Vec3(0, 0, 1)), RGB(1));
+}
+
+/// Defaults as Mitsuba 3.9.1 prints them: polypropylene over air, diffuse 0.5, linear.
+TEST(Plastics, Defaults) {
+  SceneFolder folder;
+  const double eta = 1.49 / 1.000277;
+  expect_equal(value(*load_bsdf(folder, R"(<bsdf type="plastic"/>)")), value(*make_plastic(eta)));
+  expect_equal(value(*load_bsdf(folder, R"(<bsdf type="roughplastic"/>)")),
+               value(*make_rough_plastic({}, eta)));
+  const auto bsdf =
+      load_bsdf(folder, R"(<bsdf type="plastic"><boolean name="nonlinear" value="true"/>
+      <rgb name="diffuse_reflectance" value="0.2 0.5 0.8"/><float name="int_ior" value="1.9"/>
+      <rgb name="specular_reflectance" value="0.5 0.4 0.9"/><float name="ext_ior" value="1"/></bsdf>)");
+  const auto expected = make_plastic(1.9, true, {0.2, 0.5, 0.8}, {0.5, 0.4, 0.9});
+  expect_equal(value(*bsdf), value(*expected));
+  expect_equal(dirac_value(*bsdf), dirac_value(*expected));
+  const auto rough =
+      load_bsdf(folder, R"(<bsdf type="roughplastic"><float name="alpha" value="0.3"/>
+      <string name="distribution" value="ggx"/></bsdf>)");
+  expect_equal(value(*rough), value(*make_rough_plastic({MicrofacetKind::Ggx, 0.3, 0.3}, eta)));
+  EXPECT_TRUE(folder.warnings.empty());
+}
+
+TEST(Mask, DefaultsAndErrors) {
+  SceneFolder folder;
+  const auto half = load_bsdf(folder, R"(<bsdf type="mask"><bsdf type="diffuse"/></bsdf>)");
+  expect_equal(half->passage(SurfacePoint{}, Vec3(0, 0, 1)), RGB(0.5));
+  expect_equal(value(*half), RGB(0.25 * kInvPi));
+  const auto board = load_bsdf(folder, R"(<bsdf type="mask"><bsdf type="diffuse"/>
+      <texture type="checkerboard" name="opacity"><float name="color0" value="0"/>
+      <float name="color1" value="1"/></texture></bsdf>)");
+  SurfacePoint x;
+  x.uv = {0.25, 0.75};
+  expect_equal(board->passage(x, Vec3(0, 0, 1)), RGB(1));
+  EXPECT_TRUE(folder.warnings.empty());
+  EXPECT_NE(folder.error(R"(<bsdf type="mask"/>)").find("needs a nested bsdf"), std::string::npos);
+  EXPECT_NE(
+      folder
+          .error(
+              R"(<bsdf type="mask"><bsdf type="diffuse"/><float name="opacity" value="2"/></bsdf>)")
+          .find("2:41: \"opacity\" must lie between 0 and 1"),
+      std::string::npos);
+}
+
+TEST(ThinDielectric, Defaults) {
+  SceneFolder folder;
+  const auto pane = load_bsdf(folder, R"(<bsdf type="thindielectric"/>)");
+  const auto expected = make_thin_dielectric(1.5046 / 1.000277);
+  expect_equal(dirac_value(*pane), dirac_value(*expected));
+  expect_equal(pane->passage(SurfacePoint{}, Vec3(0.6, 0, 0.8)),
+               expected->passage(SurfacePoint{}, Vec3(0.6, 0, 0.8)));
+  EXPECT_EQ(pane->eta(), 1) << "nothing refracts";
+}
+
+TEST(Blend, TakesTwoAndAWeight) {
+  SceneFolder folder;
+  const auto blend = load_bsdf(folder, R"(<bsdf type="blendbsdf"><float name="weight" value="0.25"/>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.8"/></bsdf>
+      <bsdf type="diffuse"><rgb name="reflectance" value="0.4"/></bsdf></bsdf>)");
+  expect_equal(value(*blend), RGB(0.7 * kInvPi));
+  const std::string one = R"(<bsdf type="diffuse"/>)";
+  EXPECT_NE(folder.error("<bsdf type=\"blendbsdf\">" + one + "</bsdf>")
+                .find("needs two nested bsdfs, found 1"),
+            std::string::npos);
+  EXPECT_NE(folder.error("<bsdf type=\"blendbsdf\">" + one + one + "</bsdf>")
+                .find("needs the float or texture \"weight\""),
+            std::string::npos);
+}
+
+/// Named materials: what Mitsuba 3.9.1 has for gold, and that the names end up in what they name.
+TEST(Conductor, KnowsMitsubasMaterials) {
+  SceneFolder folder;
+  const auto gold =
+      load_bsdf(folder, R"(<bsdf type="conductor"><string name="material" value="Au"/></bsdf>)");
+  expect_equal(dirac_value(*gold), dirac_value(*make_conductor({0.143036, 0.3753071, 1.442045},
+                                                               {3.982997, 2.385556, 1.603359})));
+  for (const char* name : {"Ag", "Al", "Cu", "Cr", "W", "AlSb", "TiO2_palik"})
+    EXPECT_TRUE(is_finite(dirac_value(
+        *load_bsdf(folder, "<bsdf type=\"conductor\"><string name=\"material\" value=\"" +
+                               std::string(name) + "\"/></bsdf>"))))
+        << name;
+  EXPECT_NE(folder.error(R"(<bsdf type="conductor"><string name="material" value="au"/></bsdf>)")
+                .find("2:24: no index of refraction is known for \"au\""),
+            std::string::npos);
+}
+
+TEST(OldBsdfs, Defaults) {
+  SceneFolder folder;
+  expect_equal(value(*load_bsdf(folder, R"(<bsdf type="phong"/>)")), value(*make_phong()));
+  expect_equal(value(*load_bsdf(folder, R"(<bsdf type="roughdiffuse"/>)")),
+               value(*make_rough_diffuse()));
+}
+
+TEST(Principled, Defaults) {
+  SceneFolder folder;
+  expect_equal(value(*load_bsdf(folder, R"(<bsdf type="principled"/>)")),
+               value(*make_principled()));
+  PrincipledSettings s;
+  s.metallic = 0.3;
+  s.eta = 1.4;
+  expect_equal(value(*load_bsdf(folder, R"(<bsdf type="principled"><float name="eta" value="1.4"/>
+      <float name="metallic" value="0.3"/></bsdf>)")),
+               value(*make_principled(s)));
+  EXPECT_TRUE(folder.warnings.empty());
+  EXPECT_NE(folder.error(R"(<bsdf type="principled"><float name="sheen" value="1.1"/></bsdf>)")
+                .find("2:25: \"sheen\" must lie between 0 and 1"),
+            std::string::npos);
 }
 
 }  // namespace

@@ -26,7 +26,7 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
       {R"(  <shape type="spher"/>)",
        "2:3: the shape plugin \"spher\" is not supported (did you mean \"sphere\"?); known: "
        "\"cube\", "},
-      {R"(<bsdf type="plastic"/>)", "2:1: the bsdf plugin \"plastic\" is not supported; known: "},
+      {R"(<bsdf type="hair"/>)", "2:1: the bsdf plugin \"hair\" is not supported; known: "},
       {R"(<medium type="heterogenous"/>)",
        "2:1: the medium plugin \"heterogenous\" is not supported (did you mean "
        "\"heterogeneous\"?); known: \"heterogeneous\" and \"homogeneous\""},
@@ -40,8 +40,9 @@ TEST(Errors, NameLineColumnExpectedAndFound) {
       {R"(<shape type="sphere"><flaot name="radius" value="1"/></shape>)",
        "2:22: unknown element <flaot> (did you mean \"float\"?)"},
       {R"(<bsdf type="diffuse"><texture name="reflectance" type="bitmap"/></bsdf>)",
-       "2:22: <texture> is not supported yet"},
-      {R"(<texture type="bitmap" id="t"/>)", "2:1: <texture> is not supported yet"},
+       "2:22: texture \"bitmap\" needs the string \"filename\""},
+      {R"(<texture type="bitmap" id="t"/>)",
+       "2:1: texture \"bitmap\" needs the string \"filename\""},
       {R"(<shape type="sphere"><string name="radius" value="2"/></shape>)",
        "2:22: \"radius\" must be of type float, found string"},
       {R"(<shape type="sphere"><rgb name="radius" value="2"/></shape>)",
