@@ -77,6 +77,12 @@ class Cylinder final : public Shape {
     return {along, axis_, (flip_ ? -1 : 1) / radius_ * along, Vec3(0)};
   }
 
+  std::array<Vec2, 2> uv_derivatives(const SurfacePoint&) const override {
+    // The azimuth rises along axis × n_g or against it.
+    const double sign = (flip_ ? -1.0 : 1.0) * (dot(cross(axis_, s_), t_) > 0 ? 1.0 : -1.0);
+    return {Vec2(sign * 0.5 * kInvPi / radius_, 0), Vec2(0, 1 / length_)};
+  }
+
   double area() const override { return 2 * kPi * radius_ * length_; }
   SurfacePoint sample(const Vec2& u) const override { return surface_point(0, u); }
   Vec2 invert(const SurfacePoint& x) const override {

@@ -69,6 +69,12 @@ class Disk final : public Shape {
     return {e1_, e2_, Vec3(0), Vec3(0)};
   }
 
+  /// Of radius and azimuth by the coordinates of the unit disk.
+  std::array<Vec2, 2> uv_derivatives(const SurfacePoint& point) const override {
+    const double x = point.local.x, y = point.local.y, r = length(Vec3(point.local, 0));
+    return {Vec2(x / r, -0.5 * kInvPi * y / sqr(r)), Vec2(y / r, 0.5 * kInvPi * x / sqr(r))};
+  }
+
   double area() const override { return kPi * length(across_); }
   SurfacePoint sample(const Vec2& u) const override {
     return surface_point(0, warp::sample_disk(u));

@@ -404,6 +404,34 @@ TEST(Mesh, VertexNormalsAreWeightedByAngle) {
 }
 
 /// Texture coordinates of Mitsuba 3.9.1: ray_intersect() of each shape alone.
+/// A step along a tangent changes its own coordinate alone, by as much.
+TEST(TextureCoordinates, RiseAlongTheirTangents) {
+  constexpr double kStep = 1e-6;
+  for (const ShapeCase& c : all_cases(1, Vec3(0.2, -0.1, 0.3))) {
+    SCOPED_TRACE(c.name);
+    const Shape* shapes[] = {c.shape.get()};
+    const Accel accel(shapes);
+    int compared = 0;
+    for (int i = 0; i < 200; ++i) {
+      Rng rng(11, RngDomain::Test, 0, static_cast<std::uint64_t>(i));
+      const SurfacePoint x = c.shape->sample(uniform2(rng));
+      const auto tangents = c.shape->uv_tangents(x);
+      for (int k = 0; k < 2; ++k) {
+        const Vec3 p = x.position + kStep * tangents[k];
+        const auto hit = accel.intersect(Ray{p + 1e-3 * x.n_g, -x.n_g, 0, 2e-3});
+        if (!hit || hit->id.primitive != x.primitive) continue;
+        const Vec2 change =
+            (c.shape->surface_point(hit->id.primitive, hit->local).uv - x.uv) / kStep;
+        if (std::fabs(change.x) > 100 || std::fabs(change.y) > 100) continue;  // across the seam
+        EXPECT_NEAR(change[k], 1, 2e-3);
+        EXPECT_NEAR(change[1 - k], 0, 2e-3);
+        ++compared;
+      }
+    }
+    EXPECT_GT(compared, 100);
+  }
+}
+
 TEST(TextureCoordinates, AreMitsubas) {
   const auto expect_uv = [](const Shape& shape, const Vec3& position, const Vec2& uv) {
     const Vec3 out = 5.0 * normalize(position);
