@@ -216,7 +216,8 @@ struct BoundaryGroup::Impl {
     return false;
   }
 
-  void check_self_intersection() {
+  /// False if it meets itself.
+  bool check_self_intersection() {
     std::vector<std::pair<SurfaceMesh::Face_index, SurfaceMesh::Face_index>> pairs;
     PMP::self_intersections(mesh, std::back_inserter(pairs),
                             CGAL::parameters::maximum_number(kMostIntersections));
@@ -228,6 +229,7 @@ struct BoundaryGroup::Impl {
     }
     report(BoundaryDefect::Kind::SelfIntersecting, counts, "pair of intersecting triangles",
            "pairs of intersecting triangles");
+    return counts.empty();
   }
 
   Vec3 normal(std::size_t i) const {
@@ -273,11 +275,12 @@ struct BoundaryGroup::Impl {
     weld(shapes);
     const bool consistent = check_edges();
     build_mesh();
-    check_self_intersection();
+    const bool simple = check_self_intersection();
     if (!closed) return;
     volume = std::fabs(signed_volume());
     side = std::make_unique<Side>(mesh);
-    if (consistent) check_outside();
+    // Of pieces that intersect, either side of a triangle may lie inside another.
+    if (consistent && simple) check_outside();
   }
 };
 

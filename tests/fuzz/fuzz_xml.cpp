@@ -20,6 +20,14 @@ const std::filesystem::path& folder() {
     const std::filesystem::path made = pattern;
     std::ofstream(made / "a.obj") << "v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n";
     std::ofstream(made / "a.xml") << "<scene version='3.0.0'><default name='x' value='1'/></scene>";
+    std::ofstream(made / "a.spd") << "400 0.5\n700 1\n";
+    std::ofstream(made / "a.exr") << "what picture() answers for";
+    std::ofstream vol(made / "a.vol", std::ios::binary);
+    const std::int32_t head[] = {1, 1, 1, 1, 1};
+    const float rest[] = {0, 0, 0, 1, 1, 1, 0.5f};
+    vol.write("VOL\3", 4);
+    vol.write(reinterpret_cast<const char*>(head), sizeof head);
+    vol.write(reinterpret_cast<const char*>(rest), sizeof rest);
     std::atexit([] {
       std::error_code ignored;
       std::filesystem::remove_all(folder(), ignored);
@@ -27,6 +35,12 @@ const std::filesystem::path& folder() {
     return made;
   }();
   return path;
+}
+
+fogbow::Image picture(const std::string&) {
+  fogbow::Image image(2, 1, {"R", "G", "B"});
+  image.at(0, 0, 0) = image.at(1, 0, 2) = 0.5f;
+  return image;
 }
 
 }  // namespace
@@ -37,6 +51,7 @@ int LLVMFuzzerTestOneInput(const std::uint8_t* data, std::size_t size) {
   std::ofstream(scene, std::ios::binary) << testing::text_of(data, size);
   LoadOptions options;
   options.sandbox_paths = true;
+  options.read_image = picture;
   std::vector<std::string> warnings;
   testing::read_or_refuse([&] {
     const SceneDescription read = load_mitsuba_xml(scene, builtin_media(), options, warnings);

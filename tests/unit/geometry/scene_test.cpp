@@ -175,8 +175,8 @@ TEST(Scene, ReportsBoundariesThatOverlap) {
       Vec3(0), {boundary(cube(1), a, nullptr, "cube"), boundary(slab, b, nullptr, "slab")}));
   EXPECT_EQ(crossed.medium_at(Vec3(0)), b.get());
   EXPECT_EQ(count_with(crossed,
-                       "shape 'slab' bounds medium 'b' and overlaps medium 'a', which "
-                       "shape 'cube' bounds"),
+                       "shape 'slab' (test.xml:7:3) bounds medium 'b' and overlaps medium "
+                       "'a', which shape 'cube' (test.xml:7:3) bounds"),
             1);
   EXPECT_EQ(count_with(crossed, "the camera lies within the closed boundary of medium 'a'"), 1);
 }
