@@ -20,10 +20,6 @@ struct Tally {
   std::vector<double> totals;  ///< luminance of each sample
 };
 
-bool is_dirac(const Scene& scene, const Vertex& light) {
-  return light.emitter >= 0 && !hittable(scene, light);
-}
-
 /// Adds a path of this luminance to the sums that it belongs to.
 void classify(const Scene& scene, const Path& path, double value, Tally& tally) {
   const std::size_t last = path.size() - 1;
@@ -51,7 +47,7 @@ bool meets_specular(const Scene& scene, const Subpath& path) {
 }
 
 void count_ends(const Scene& scene, const Workspace& w, Tally& tally) {
-  if (!w.light.empty() && is_dirac(scene, w.light[0].x)) {
+  if (!w.light.empty() && is_dirac(scene.emitter(w.light[0].x.emitter).kind())) {
     ++tally.dirac_lights;
     tally.dirac_lit_through += meets_specular(scene, w.light);
   }

@@ -84,6 +84,7 @@ using Counts = std::map<std::uint32_t, std::size_t>;  ///< by shape
 
 struct BoundaryGroup::Impl {
   std::vector<BoundaryDefect> defects;
+  Bounds bounds;
   std::vector<std::array<Vec3, 2>> both_sides;  ///< of points spread over the surface
   std::vector<const Sphere*> spheres;           ///< all shapes of the group, where all are spheres
   std::vector<Vec3> vertices;
@@ -104,6 +105,7 @@ struct BoundaryGroup::Impl {
     const int count =
         std::clamp(kMostPoints / static_cast<int>(shapes.size()), kLeastPoints, kPointsOfShape);
     for (const Shape* shape : shapes) {
+      bounds.extend(shape->bounds());
       const double aside = kAside * shape->bounds().radius();
       for (int i = 0; i < count; ++i) {
         const SurfacePoint x = shape->sample(spread_point(i, count));
@@ -319,6 +321,7 @@ bool BoundaryGroup::contains(const Vec3& p) const {
 }
 
 bool BoundaryGroup::crosses(const BoundaryGroup& other) const {
+  if (!impl_->bounds.overlaps(other.impl_->bounds)) return false;
   bool inside = false, outside = false;
   for (const auto& [front, back] : impl_->both_sides) {
     const int sides = other.contains(front) + other.contains(back);

@@ -7,41 +7,26 @@
 namespace fogbow {
 namespace {
 
-class ConstantEmitter final : public Emitter {
+class ConstantEmitter final : public ParallelLight {
  public:
   explicit ConstantEmitter(const RGB& radiance) : radiance_(require_radiance(radiance)) {}
 
   EmitterKind kind() const override { return EmitterKind::Infinite; }
-  void bind(const Vec3& scene_center, double scene_radius) override {
-    beam_.bind(scene_center, scene_radius);
-  }
   /// Flux through the scene's disk from all directions.
-  RGB power() const override { return 4 * kPi * beam_.area() * radiance_; }
+  RGB power() const override { return 4 * kPi * area() * radiance_; }
 
   std::optional<EmitterPoint> sample_position(const Vec3& u) const override {
-    EmitterPoint x = beam_.point(warp::sample_sphere(Vec2(u)));
-    x.pdf_position = warp::pdf_sphere();
-    return x;
+    return point(warp::sample_sphere(Vec2(u)), warp::pdf_sphere());
   }
   double pdf_position(const EmitterPoint&) const override { return warp::pdf_sphere(); }
   std::optional<Vec3> invert_position(const EmitterPoint& x, const Vec3& auxiliary) const override {
     return Vec3(warp::invert_sphere(x.surface.n_g), auxiliary.z);
   }
 
-  EmitterDirection sample_direction(const EmitterPoint& x, const Vec2& u) const override {
-    return beam_.sample(x, u);
-  }
-  double pdf_direction(const EmitterPoint&, const Vec3&) const override { return beam_.pdf(); }
-  std::optional<Vec2> invert_direction(const EmitterPoint& x,
-                                       const EmitterDirection& d) const override {
-    return beam_.invert(x, d);
-  }
-
   RGB L_e(const EmitterPoint&, const Vec3&) const override { return radiance_; }
 
  private:
   RGB radiance_;
-  ParallelLight beam_;
 };
 
 }  // namespace

@@ -7,7 +7,7 @@
 namespace fogbow {
 namespace {
 
-class DirectionalEmitter final : public Emitter {
+class DirectionalEmitter final : public ParallelLight {
  public:
   DirectionalEmitter(const Vec3& direction, const RGB& irradiance)
       : irradiance_(require_radiance(irradiance)) {
@@ -17,28 +17,14 @@ class DirectionalEmitter final : public Emitter {
   }
 
   EmitterKind kind() const override { return EmitterKind::Directional; }
-  void bind(const Vec3& scene_center, double scene_radius) override {
-    beam_.bind(scene_center, scene_radius);
-  }
-  RGB power() const override { return beam_.area() * irradiance_; }
+  RGB power() const override { return area() * irradiance_; }
 
   std::optional<EmitterPoint> sample_position(const Vec3&) const override {
-    EmitterPoint x = beam_.point(direction_);
-    x.pdf_position = 1;
-    return x;
+    return point(direction_, 1);
   }
   double pdf_position(const EmitterPoint&) const override { return 1; }
   std::optional<Vec3> invert_position(const EmitterPoint&, const Vec3& auxiliary) const override {
     return auxiliary;
-  }
-
-  EmitterDirection sample_direction(const EmitterPoint& x, const Vec2& u) const override {
-    return beam_.sample(x, u);
-  }
-  double pdf_direction(const EmitterPoint&, const Vec3&) const override { return beam_.pdf(); }
-  std::optional<Vec2> invert_direction(const EmitterPoint& x,
-                                       const EmitterDirection& d) const override {
-    return beam_.invert(x, d);
   }
 
   RGB L_e(const EmitterPoint&, const Vec3&) const override { return irradiance_; }
@@ -46,7 +32,6 @@ class DirectionalEmitter final : public Emitter {
  private:
   Vec3 direction_;
   RGB irradiance_;
-  ParallelLight beam_;
 };
 
 }  // namespace

@@ -162,7 +162,7 @@ class EnvironmentMap {
   RGB flux_{0};
 };
 
-class EnvironmentEmitter final : public Emitter {
+class EnvironmentEmitter final : public ParallelLight {
  public:
   EnvironmentEmitter(const Image& image, const Transform& to_world, double scale)
       : map_(image, scale) {
@@ -174,14 +174,11 @@ class EnvironmentEmitter final : public Emitter {
   }
 
   EmitterKind kind() const override { return EmitterKind::Infinite; }
-  void bind(const Vec3& scene_center, double scene_radius) override {
-    beam_.bind(scene_center, scene_radius);
-  }
-  RGB power() const override { return beam_.area() * map_.flux(); }
+  RGB power() const override { return area() * map_.flux(); }
 
   std::optional<EmitterPoint> sample_position(const Vec3& u) const override {
     const Vec3 d = map_.sample(Vec2(u));
-    EmitterPoint x = beam_.point(-normalize(axes_ * d));
+    EmitterPoint x = point(-normalize(axes_ * d), 0);
     x.pdf_position = map_.pdf(to_map(x));
     return x;
   }
@@ -192,15 +189,6 @@ class EnvironmentEmitter final : public Emitter {
     return Vec3(*u, auxiliary.z);
   }
 
-  EmitterDirection sample_direction(const EmitterPoint& x, const Vec2& u) const override {
-    return beam_.sample(x, u);
-  }
-  double pdf_direction(const EmitterPoint&, const Vec3&) const override { return beam_.pdf(); }
-  std::optional<Vec2> invert_direction(const EmitterPoint& x,
-                                       const EmitterDirection& d) const override {
-    return beam_.invert(x, d);
-  }
-
   RGB L_e(const EmitterPoint& x, const Vec3&) const override { return map_.radiance(to_map(x)); }
 
  private:
@@ -209,7 +197,6 @@ class EnvironmentEmitter final : public Emitter {
 
   EnvironmentMap map_;
   Mat3 axes_;
-  ParallelLight beam_;
 };
 
 }  // namespace

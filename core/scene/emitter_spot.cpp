@@ -3,16 +3,17 @@
 #include "core/math/warp.h"
 #include "core/scene/emitter_radiance.h"
 #include "core/scene/emitters.h"
+#include "core/scene/point_light.h"
 
 namespace fogbow {
 namespace {
 
 /// Directions are uniform in the cone that is lit.
-class SpotEmitter final : public Emitter {
+class SpotEmitter final : public PointLight {
  public:
   SpotEmitter(const Vec3& position, const Vec3& axis, const RGB& intensity, double cutoff_degrees,
               double beam_degrees)
-      : position_(position),
+      : PointLight(position),
         intensity_(require_radiance(intensity)),
         cutoff_(cutoff_degrees * kPi / 180),
         beam_(beam_degrees * kPi / 180),
@@ -27,7 +28,6 @@ class SpotEmitter final : public Emitter {
     frame_ = Frame(normalize(axis));
   }
 
-  EmitterKind kind() const override { return EmitterKind::Point; }
   /// 2π ∫ falloff sinθ dθ: 1 − (sin c − sin b)/(c − b) where it falls.
   RGB power() const override {
     const double width = cutoff_ - beam_;
@@ -37,20 +37,9 @@ class SpotEmitter final : public Emitter {
     return 2 * kPi * solid_angle * intensity_;
   }
 
-  std::optional<EmitterPoint> sample_position(const Vec3&) const override {
-    EmitterPoint x;
-    x.surface.position = position_;
-    x.pdf_position = 1;
-    return x;
-  }
-  double pdf_position(const EmitterPoint&) const override { return 1; }
-  std::optional<Vec3> invert_position(const EmitterPoint&, const Vec3& auxiliary) const override {
-    return auxiliary;
-  }
-
   EmitterDirection sample_direction(const EmitterPoint&, const Vec2& u) const override {
     const Vec3 w = warp::sample_cone(u, one_minus_cos_);
-    return {frame_.to_world(w), position_, 1 / (2 * kPi * one_minus_cos_)};
+    return {frame_.to_world(w), position(), 1 / (2 * kPi * one_minus_cos_)};
   }
   double pdf_direction(const EmitterPoint&, const Vec3& w) const override {
     return warp::pdf_cone(frame_.to_local(w), one_minus_cos_);
@@ -71,7 +60,6 @@ class SpotEmitter final : public Emitter {
   }
 
  private:
-  Vec3 position_;
   Frame frame_;
   RGB intensity_;
   double cutoff_, beam_;

@@ -239,8 +239,7 @@ void Scene::locate_emitters() {
   for (std::size_t i = 0; i < emitters_.size(); ++i)
     if (const auto p = point_light_position(*emitters_[i]))
       medium_around_emitter_[i] = medium_at(*p);
-  for (std::size_t i = 0; i < emitters_.size(); ++i)
-    if (at_infinity(emitters_[i]->kind()))
+    else if (at_infinity(emitters_[i]->kind()))
       medium_around_emitter_[i] =
           medium_at(bounds_.center() + 4 * radius_ * spread_direction(0, 1));
 }

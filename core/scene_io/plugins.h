@@ -29,7 +29,6 @@ struct FileContext {
   ContentHash& hash;
 };
 
-using ShapeContext = FileContext;
 /// What emitters and textures need: files, whose bytes go into the hash, and a reader of pictures.
 struct PictureContext {
   const FileResolver& files;
@@ -37,7 +36,7 @@ struct PictureContext {
   const ImageReader& read_image;
 };
 
-const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins();
+const PluginTable<std::shared_ptr<const Shape>(Properties&, const FileContext&)>& shape_plugins();
 const PluginTable<std::shared_ptr<const Bsdf>(Properties&)>& bsdf_plugins();
 const PluginTable<std::shared_ptr<const Texture>(Properties&, const PictureContext&)>&
 texture_plugins();

@@ -12,7 +12,7 @@ namespace {
 
 constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{8} << 30;
 
-std::shared_ptr<const Shape> sphere(Properties& p, const ShapeContext&) {
+std::shared_ptr<const Shape> sphere(Properties& p, const FileContext&) {
   const Vec3 center = p.point("center", Vec3(0));
   const double radius = p.positive_number("radius", 1);
   const Transform to_world = p.transform("to_world");
@@ -25,22 +25,22 @@ std::shared_ptr<const Shape> sphere(Properties& p, const ShapeContext&) {
                      scale * Mat3(to_world.inverse_matrix()));
 }
 
-std::shared_ptr<const Shape> rectangle(Properties& p, const ShapeContext&) {
+std::shared_ptr<const Shape> rectangle(Properties& p, const FileContext&) {
   const Transform to_world = p.transform("to_world");
   return make_rectangle(to_world, p.boolean("flip_normals", false));
 }
 
-std::shared_ptr<const Shape> cube(Properties& p, const ShapeContext&) {
+std::shared_ptr<const Shape> cube(Properties& p, const FileContext&) {
   const Transform to_world = p.transform("to_world");
   return make_cube(to_world, p.boolean("flip_normals", false));
 }
 
-std::shared_ptr<const Shape> disk(Properties& p, const ShapeContext&) {
+std::shared_ptr<const Shape> disk(Properties& p, const FileContext&) {
   const Transform to_world = p.transform("to_world");
   return make_disk(to_world, p.boolean("flip_normals", false));
 }
 
-std::shared_ptr<const Shape> cylinder(Properties& p, const ShapeContext&) {
+std::shared_ptr<const Shape> cylinder(Properties& p, const FileContext&) {
   const Vec3 p0 = p.point("p0", Vec3(0)), p1 = p.point("p1", Vec3(0, 0, 1));
   const double radius = p.positive_number("radius", 1);
   const Transform to_world = p.transform("to_world");
@@ -98,7 +98,7 @@ std::shared_ptr<const Shape> mesh_shape(Properties& p, TriangleMeshData mesh, bo
   return make_mesh(std::move(mesh));
 }
 
-std::string read_mesh_bytes(Properties& p, const ShapeContext& context, std::string& path) {
+std::string read_mesh_bytes(Properties& p, const FileContext& context, std::string& path) {
   const std::string name = p.required_string("filename");
   const SourceLocation& where = p.where("filename");
   const auto file = context.files.resolve(name, where);
@@ -108,19 +108,19 @@ std::string read_mesh_bytes(Properties& p, const ShapeContext& context, std::str
   return bytes;
 }
 
-std::shared_ptr<const Shape> ply(Properties& p, const ShapeContext& context) {
+std::shared_ptr<const Shape> ply(Properties& p, const FileContext& context) {
   std::string path;
   const std::string bytes = read_mesh_bytes(p, context, path);
   return mesh_shape(p, parse_ply(bytes, path), false);
 }
 
-std::shared_ptr<const Shape> obj(Properties& p, const ShapeContext& context) {
+std::shared_ptr<const Shape> obj(Properties& p, const FileContext& context) {
   std::string path;
   const std::string bytes = read_mesh_bytes(p, context, path);
   return mesh_shape(p, parse_obj(bytes, path), true);
 }
 
-std::shared_ptr<const Shape> serialized(Properties& p, const ShapeContext& context) {
+std::shared_ptr<const Shape> serialized(Properties& p, const FileContext& context) {
   const std::int64_t index = p.integer("shape_index", 0);
   if (index < 0) p.fail("shape_index", "\"shape_index\" must not be negative");
   std::string path;
@@ -131,8 +131,8 @@ std::shared_ptr<const Shape> serialized(Properties& p, const ShapeContext& conte
 
 }  // namespace
 
-const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)>& shape_plugins() {
-  static const PluginTable<std::shared_ptr<const Shape>(Properties&, const ShapeContext&)> table{
+const PluginTable<std::shared_ptr<const Shape>(Properties&, const FileContext&)>& shape_plugins() {
+  static const PluginTable<std::shared_ptr<const Shape>(Properties&, const FileContext&)> table{
       {"sphere", sphere}, {"rectangle", rectangle},  {"cube", cube},
       {"disk", disk},     {"cylinder", cylinder},    {"ply", ply},
       {"obj", obj},       {"serialized", serialized}};

@@ -356,7 +356,7 @@ void SceneBuilder::surface(const XmlNode& node, const Transform* instance) {
   Surface surface;
   surface.id = p.id();
   surface.where = p.where();
-  surface.shape = construct(shape_plugins(), p, ShapeContext{files_, object.hash});
+  surface.shape = construct(shape_plugins(), p, FileContext{files_, object.hash});
   surface.bsdf = p.take_one<Bsdf>();
   surface.interior = p.take<Medium>("interior");
   surface.exterior = p.take<Medium>("exterior");

@@ -2,6 +2,7 @@
 #pragma once
 #include <stdexcept>
 
+#include "core/math/warp.h"
 #include "core/scene/bsdf.h"
 #include "core/scene/texture.h"
 
@@ -9,6 +10,28 @@ namespace fogbow {
 
 /// What only reflects, hence may stand inside `twosided`; nothing refracts, and f_s is symmetric.
 class ReflectingBsdf : public Bsdf {};
+
+/// Reflects into the hemisphere of `from`, sampled by the cosine.
+class CosineSampledBsdf : public ReflectingBsdf {
+ public:
+  bool has_smooth() const final { return true; }
+  double pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const final {
+    return from.z > 0 ? warp::pdf_cosine_hemisphere(to) : 0.0;
+  }
+  std::optional<BsdfSample> sample(const SurfacePoint&, const Vec3& from,
+                                   const Vec3& u) const final {
+    if (!(from.z > 0)) return std::nullopt;
+    const Vec3 to = warp::sample_cosine_hemisphere({u.y, u.z});
+    if (!(to.z > 0)) return std::nullopt;
+    return BsdfSample{to, false, warp::pdf_cosine_hemisphere(to)};
+  }
+  std::optional<Vec3> invert(const SurfacePoint&, const Vec3& from, const Vec3& to, bool dirac,
+                             const Vec3& auxiliary) const final {
+    if (dirac || !(from.z > 0 && to.z > 0)) return std::nullopt;
+    const Vec2 u = warp::invert_cosine_hemisphere(to);
+    return Vec3(auxiliary.x, u.x, u.y);
+  }
+};
 
 /// The mirror image of w.
 inline Vec3 reflect_z(const Vec3& w) { return {-w.x, -w.y, w.z}; }

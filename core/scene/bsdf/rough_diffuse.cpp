@@ -1,7 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <algorithm>
 
-#include "core/math/warp.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/bsdf/reflecting.h"
 
@@ -9,15 +8,13 @@ namespace fogbow {
 namespace {
 
 /// [OrenNayar1994], sampled as Lambertian.
-class RoughDiffuse final : public ReflectingBsdf {
+class RoughDiffuse final : public CosineSampledBsdf {
  public:
   RoughDiffuse(const Textured<RGB>& reflectance, const Textured<double>& alpha, bool fast)
       : reflectance_(checked_reflectance(reflectance)), alpha_(alpha), fast_(fast) {
     if (const auto range = alpha.range(); !(range.least >= 0 && std::isfinite(range.greatest)))
       throw std::domain_error("roughness must be finite and not negative");
   }
-
-  bool has_smooth() const override { return true; }
 
   RGB f_s(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const override {
     if (!(w_light.z > 0 && w_eye.z > 0)) return RGB(0);
@@ -35,22 +32,6 @@ class RoughDiffuse final : public ReflectingBsdf {
     const double theta_eye = std::atan2(sin_eye, w_eye.z);
     const double a = std::max(theta_light, theta_eye), b = std::min(theta_light, theta_eye);
     return fast_ ? qualitative(rho, sigma2, a, b, cos_phi) : full(rho, sigma2, a, b, cos_phi);
-  }
-  double pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const override {
-    return from.z > 0 ? warp::pdf_cosine_hemisphere(to) : 0.0;
-  }
-  std::optional<BsdfSample> sample(const SurfacePoint&, const Vec3& from,
-                                   const Vec3& u) const override {
-    if (!(from.z > 0)) return std::nullopt;
-    const Vec3 to = warp::sample_cosine_hemisphere({u.y, u.z});
-    if (!(to.z > 0)) return std::nullopt;
-    return BsdfSample{to, false, warp::pdf_cosine_hemisphere(to)};
-  }
-  std::optional<Vec3> invert(const SurfacePoint&, const Vec3& from, const Vec3& to, bool dirac,
-                             const Vec3& auxiliary) const override {
-    if (dirac || !(from.z > 0 && to.z > 0)) return std::nullopt;
-    const Vec2 u = warp::invert_cosine_hemisphere(to);
-    return Vec3(auxiliary.x, u.x, u.y);
   }
 
   RGB albedo(const SurfacePoint& x) const override { return reflectance_(x); }

@@ -12,35 +12,35 @@ namespace {
 
 constexpr int kEntries = 64;
 
-/// What a rough interface reflects of light that comes from μ = cosθ, by the midpoint rule over the
-/// normals visible from there; what is masked on the way out is lost.
-double rough_reflectance(const MicrofacetDistribution& facets, double mu, double eta) {
-  constexpr int kRows = 12;
+/// Mean of value(w, h) over the normals h visible from cosθ = μ, by the midpoint rule on rows ×
+/// rows of them; w looks at the interface from there.
+template <class Value>
+double mean_over_visible(const MicrofacetDistribution& facets, double mu, int rows, Value&& value) {
   const Vec3 w(std::sqrt(1 - mu * mu), 0, mu);
   double sum = 0;
-  for (int i = 0; i < kRows; ++i)
-    for (int j = 0; j < kRows; ++j) {
-      const Vec3 h = facets.sample_visible(w, {(i + 0.5) / kRows, (j + 0.5) / kRows});
-      const Vec3 out = 2 * dot(w, h) * h - w;
-      if (out.z > 0) sum += facets.G1(out) * fresnel_dielectric(dot(w, h), eta).F;
-    }
-  return sum / (kRows * kRows);
+  for (int i = 0; i < rows; ++i)
+    for (int j = 0; j < rows; ++j)
+      sum += value(w, facets.sample_visible(w, {(i + 0.5) / rows, (j + 0.5) / rows}));
+  return sum / (rows * rows);
+}
+
+/// What a rough interface reflects of light that comes from there; what is masked on the way out is
+/// lost.
+double rough_reflectance(const MicrofacetDistribution& facets, double mu, double eta) {
+  return mean_over_visible(facets, mu, 12, [&](const Vec3& w, const Vec3& h) {
+    const Vec3 out = 2 * dot(w, h) * h - w;
+    return out.z > 0 ? facets.G1(out) * fresnel_dielectric(dot(w, h), eta).F : 0.0;
+  });
 }
 
 /// The same for what gets through.
 double rough_transmittance(const MicrofacetDistribution& facets, double mu, double eta) {
-  constexpr int kRows = 64;
-  const Vec3 w(std::sqrt(1 - mu * mu), 0, mu);
-  double sum = 0;
-  for (int i = 0; i < kRows; ++i)
-    for (int j = 0; j < kRows; ++j) {
-      const Vec3 h = facets.sample_visible(w, {(i + 0.5) / kRows, (j + 0.5) / kRows});
-      const double c = dot(w, h);
-      const Refraction r = fresnel_dielectric(c, eta);
-      const Vec3 out = (c / eta - r.cos_t) * h - w / eta;
-      if (r.T > 0 && out.z < 0) sum += facets.G1(out) * r.T;
-    }
-  return sum / (kRows * kRows);
+  return mean_over_visible(facets, mu, 64, [&](const Vec3& w, const Vec3& h) {
+    const double c = dot(w, h);
+    const Refraction r = fresnel_dielectric(c, eta);
+    const Vec3 out = (c / eta - r.cos_t) * h - w / eta;
+    return r.T > 0 && out.z < 0 ? facets.G1(out) * r.T : 0.0;
+  });
 }
 
 /// A diffuse base under a rough dielectric coat. Light that enters or leaves is dimmed by the
