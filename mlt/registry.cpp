@@ -35,6 +35,8 @@ const std::vector<Entry>& entries() {
       {"propagation", 0.6, simple<make_propagation>},
       {"switch", 2, simple<make_switch>},
       {"manifold", 0.1, simple<make_manifold>},
+      {"primary_sample", 1,
+       [](double w, const TechniqueDistribution& t, int) { return make_primary_sample(w, t); }},
       {"large_step", 0.8,
        [](double w, const TechniqueDistribution& t, int) { return make_large_step(w, t); }},
   };

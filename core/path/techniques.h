@@ -3,7 +3,6 @@
 #include <span>
 
 #include "core/path/measured_path.h"
-#include "core/util/rng.h"
 
 namespace fogbow {
 
@@ -18,8 +17,9 @@ struct Range {
 /// light.
 bool joinable(const Scene& scene, const MeasuredPath& path, int split);
 
-/// Which of several infinite emitters an escaped eye subpath ends on, uniformly.
-void choose_infinite_emitter(const Scene& scene, Vertex& x, Rng& rng);
+/// Which of several infinite emitters an escaped eye subpath ends on, uniformly; takes one number
+/// if x is at infinity.
+void choose_infinite_emitter(const Scene& scene, Vertex& x, SampleStream& u);
 
 /// log Σ_l weights[l] p_l: p_l is the density in μ with which l vertices of the range are sampled
 /// from the light's side and the rest from the eye's, roulette included. weights has size() + 1
@@ -27,5 +27,17 @@ void choose_infinite_emitter(const Scene& scene, Vertex& x, Rng& rng);
 /// choose_infinite_emitter().
 double log_range_density(const Scene& scene, const MeasuredPath& path, Range range,
                          std::span<const double> weights);
+
+/// One l in proportion to weights[l] p_l, and log_range_density(), which must not be −∞.
+struct SplitChoice {
+  int l;
+  double log_density;
+};
+SplitChoice choose_split(const Scene& scene, const MeasuredPath& path, Range range,
+                         std::span<const double> weights, double u);
+
+/// The number with which choose_infinite_emitter() takes x's, uniform on its interval by
+/// `auxiliary`.
+double invert_infinite_emitter(const Scene& scene, const Vertex& x, double auxiliary);
 
 }  // namespace fogbow

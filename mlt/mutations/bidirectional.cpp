@@ -149,7 +149,7 @@ class Bidirectional final : public Mutation<PathSample> {
     }
     y.vertex(i) = step.next;
     y.set_edge(std::min(i, from), eye ? reversed(step.edge) : step.edge);
-    if (i == 0) choose_infinite_emitter(scene, y.vertex(0), rng);
+    if (i == 0) choose_infinite_emitter(scene, y.vertex(0), u);
     return i == 0 || !step.next.infinite();
   }
 

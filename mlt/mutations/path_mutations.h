@@ -32,6 +32,8 @@ PathMutation make_switch(double weight);
 PathMutation make_manifold(double weight);
 /// A new path by one technique of bidirectional path tracing.
 PathMutation make_large_step(double weight, const TechniqueDistribution& techniques);
+/// Moves all primary samples of one technique that could have made the path [Otsu2017].
+PathMutation make_primary_sample(double weight, const TechniqueDistribution& techniques);
 /// T(ȳ) = Σ_s c_{s,k−s} p_s(ȳ) of a large step.
 double log_large_step_density(const PathSample& y, const TechniqueDistribution& techniques);
 
