@@ -11,9 +11,14 @@ namespace fogbow {
 /// |from + to|²/2.
 class AxialPhase : public PhaseFunction {
  public:
-  RGB f_p(const Vec3& from, const Vec3& to) const final { return value(between(from, to)); }
+  RGB f_p(const Vec3& from, const Vec3& to) const final { return evaluate(from, to).f_p; }
   double pdf_sigma(const Vec3& from, const Vec3& to) const final {
     return density(between(from, to));
+  }
+  PhaseValue evaluate(const Vec3& from, const Vec3& to) const final {
+    const warp::PolarAngle angle = between(from, to);
+    const double d = density(angle);
+    return {value(angle, d), d};
   }
   Vec3 sample(const Vec3& from, const Vec3& u) const final {
     return Frame(-from).to_world(warp::polar_direction(sample_angle(u.y), u.z));
@@ -27,7 +32,8 @@ class AxialPhase : public PhaseFunction {
   }
 
  protected:
-  virtual RGB value(const warp::PolarAngle& angle) const { return RGB(density(angle)); }
+  /// `density` is that of the angle.
+  virtual RGB value(const warp::PolarAngle&, double density) const { return RGB(density); }
   /// In solid angle.
   virtual double density(const warp::PolarAngle& angle) const = 0;
   virtual warp::PolarAngle sample_angle(double u) const = 0;

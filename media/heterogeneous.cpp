@@ -143,7 +143,11 @@ class Heterogeneous final : public Medium {
         glm::all(glm::greaterThanEqual(p, box.lo)) && glm::all(glm::lessThanEqual(p, box.hi));
     return inside ? scale_ * sigma_t_->value(p) : RGB(0);
   }
-  RGB sigma_s(const Vec3& p) const override { return sigma_t(p) * albedo_->value(p); }
+  RGB sigma_s(const Vec3& p) const override { return coefficients(p).sigma_s; }
+  Coefficients coefficients(const Vec3& p) const override {
+    const RGB sigma = sigma_t(p);
+    return {sigma, sigma * albedo_->value(p)};
+  }
   RGB emission(const Vec3& p) const override {
     if (!emission_) return RGB(0);
     const RGB value = emission_->value(p);

@@ -68,7 +68,9 @@ class TablePhase final : public AxialPhase {
     for (RGB& v : values_) v /= mass;
   }
 
-  RGB value(const warp::PolarAngle& angle) const override { return interpolate(values_, angle); }
+  RGB value(const warp::PolarAngle& angle, double) const override {
+    return interpolate(values_, angle);
+  }
   double density(const warp::PolarAngle& angle) const override {
     return interpolate(means_, angle);
   }

@@ -42,12 +42,9 @@ Scattering scatter_surface(const Scene& scene, const Vertex& x, const Vec3& w_li
   const LocalDirections d = localize(p, w_light, w_eye);
   if (!d.consistent) return {};
   const Bsdf& b = bsdf(scene, x);
-  const RGB f = degenerate ? b.f_dirac(p, d.light, d.eye) : b.f_s(p, d.light, d.eye);
+  const auto [f, to_light, to_eye] =
+      degenerate ? b.evaluate_dirac(p, d.light, d.eye) : b.evaluate(p, d.light, d.eye);
   if (is_black(f)) return {};
-  const double to_light =
-      degenerate ? b.pdf_dirac(p, d.eye, d.light) : b.pdf_sigma(p, d.eye, d.light);
-  const double to_eye =
-      degenerate ? b.pdf_dirac(p, d.light, d.eye) : b.pdf_sigma(p, d.light, d.eye);
   const double ratio = sqr(index_at(b, d.light) / index_at(b, d.eye));
   const double stay_to_light =
       behind_specular ? 1.0 : survival(f, std::abs(d.light.z), to_light, ratio);
@@ -59,14 +56,13 @@ Scattering scatter_surface(const Scene& scene, const Vertex& x, const Vec3& w_li
 Scattering scatter_medium(const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
                           bool behind_specular) {
   const PhaseFunction& phase = x.medium->phase();
-  const RGB sigma_s = x.medium->sigma_s(x.position()), sigma_t = x.medium->sigma_t(x.position());
-  const RGB f_p = phase.f_p(w_light, w_eye);
+  const auto [sigma_t, sigma_s] = x.medium->coefficients(x.position());
+  const auto [f_p, pdf_sigma] = phase.evaluate(w_light, w_eye);
   double albedo = 0;
   for (int c = 0; c < 3; ++c)
     if (sigma_t[c] > 0) albedo = std::max(albedo, sigma_s[c] / sigma_t[c]);
   const double stay_to_light = behind_specular && albedo > 0 ? 1.0 : albedo;
-  return {sigma_s * f_p, stay_to_light * phase.pdf_sigma(w_eye, w_light),
-          albedo * phase.pdf_sigma(w_light, w_eye), stay_to_light, albedo};
+  return {sigma_s * f_p, stay_to_light * pdf_sigma, albedo * pdf_sigma, stay_to_light, albedo};
 }
 
 }  // namespace

@@ -13,9 +13,14 @@ namespace {
 /// Counts without contention: one counter a thread, summed when asked for.
 class RayCounter {
  public:
-  RayCounter() {
-    const std::lock_guard lock(mutex());
-    counters().insert(this);
+  /// The thread's own. A plain pointer is found without asking whether it has been made.
+  static RayCounter& own() {
+    static constinit thread_local RayCounter* counter = nullptr;
+    if (!counter) [[unlikely]] {
+      static thread_local RayCounter made;
+      counter = &made;
+    }
+    return *counter;
   }
   ~RayCounter() {
     const std::lock_guard lock(mutex());
@@ -33,6 +38,10 @@ class RayCounter {
   }
 
  private:
+  RayCounter() {
+    const std::lock_guard lock(mutex());
+    counters().insert(this);
+  }
   // Never destroyed: threads may end after static objects have.
   static std::mutex& mutex() {
     static auto* m = new std::mutex;
@@ -49,7 +58,7 @@ class RayCounter {
   std::atomic<std::uint64_t> count_{0};
 };
 
-thread_local RayCounter ray_count;
+void count_ray() { ++RayCounter::own(); }
 
 /// e^−depth; gray media are worth one exponential instead of three.
 RGB transmittance(const RGB& depth) {
@@ -130,13 +139,13 @@ bool unobstructed(const Scene& scene, Ray ray, const Vertex& start, PrimitiveId 
   medium = medium_toward(scene, start, ray.d);
   PrimitiveId from = start.id;
   if (!scene.has_null_surfaces() && ray.t_max < kInfinity) {
-    ++ray_count;
+    count_ray();
     if (scene.accel().occluded(ray(ray.t_min), ray(ray.t_max), from, to)) return false;
     attenuate(edge, medium, ray, ray.t_min, ray.t_max);
     return true;
   }
   for (;;) {
-    ++ray_count;
+    count_ray();
     const auto hit = scene.accel().intersect(ray, from);
     if (!hit) {
       attenuate(edge, medium, ray, ray.t_min, ray.t_max);
@@ -162,7 +171,7 @@ ExtendResult follow(const Scene& scene, const Vertex& x, Ray ray, Vertex& next, 
   const Medium* medium = medium_toward(scene, x, ray.d);
   PrimitiveId from = x.id;
   for (;;) {
-    ++ray_count;
+    count_ray();
     const auto hit = scene.accel().intersect(ray, from);
     t = hit ? hit->t : ray.t_max;
     passed(medium, ray.t_min, t);
@@ -199,7 +208,7 @@ ExtendResult extend(const Scene& scene, const Vertex& x, const Vec3& w, const Ve
     if (flies && !flies_last)
       end = medium->fly(ray, ray.t_min, t_max, flight.channel, flight.remaining);
     ray.t_max = end.t;
-    ++ray_count;
+    count_ray();
     const auto hit = scene.accel().intersect(ray, from);
     if (hit) end = {hit->t, false};
     if (flies_last)

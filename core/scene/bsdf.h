@@ -13,6 +13,12 @@ struct BsdfSample {
   double pdf_sigma;  ///< what pdf_sigma or pdf_dirac answers for it
 };
 
+/// Everything that scattering between two directions takes.
+struct BsdfValue {
+  RGB f{0};
+  double pdf_to_light = 0, pdf_to_eye = 0;  ///< of w_light given w_eye and of w_eye given w_light
+};
+
 /// Scattering at a surface. Directions are unit vectors in the local shading frame (n = +z,
 /// exterior side), both pointing away from the surface; `w_light` goes towards the light, `w_eye`
 /// towards the eye, `from`/`to` name them where a formula does not care which is which. Values are
@@ -48,6 +54,19 @@ class Bsdf {
   }
   virtual double pdf_dirac(const SurfacePoint&, const Vec3& /*from*/, const Vec3& /*to*/) const {
     return 0;
+  }
+
+  /// All three of the smooth part, or of the Dirac part, at once; densities may be left out where f
+  /// is black.
+  virtual BsdfValue evaluate(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const {
+    const RGB f = f_s(x, w_light, w_eye);
+    if (is_black(f)) return {};
+    return {f, pdf_sigma(x, w_eye, w_light), pdf_sigma(x, w_light, w_eye)};
+  }
+  BsdfValue evaluate_dirac(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const {
+    const RGB f = f_dirac(x, w_light, w_eye);
+    if (is_black(f)) return {};
+    return {f, pdf_dirac(x, w_eye, w_light), pdf_dirac(x, w_light, w_eye)};
   }
 
   /// u.x chooses lobe or event, u.y and u.z the direction; nothing where no direction comes out

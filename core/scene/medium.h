@@ -23,6 +23,10 @@ struct Majorant {
   double sigma_t;
 };
 
+struct Coefficients {
+  RGB sigma_t, sigma_s;
+};
+
 /// A participating medium; coefficients per world unit of length. Vacuum is a null pointer.
 class Medium {
  public:
@@ -32,6 +36,8 @@ class Medium {
 
   virtual RGB sigma_t(const Vec3& p) const = 0;
   virtual RGB sigma_s(const Vec3& p) const = 0;
+  /// Both at once.
+  virtual Coefficients coefficients(const Vec3& p) const { return {sigma_t(p), sigma_s(p)}; }
   /// Emitted radiance per unit length, L_e where c₁ = 1; 0 where σ_t is, for no flight ends there.
   virtual RGB emission(const Vec3& p) const = 0;
   virtual bool scatters() const = 0;

@@ -18,6 +18,11 @@ class CosineSampledBsdf : public ReflectingBsdf {
   double pdf_sigma(const SurfacePoint&, const Vec3& from, const Vec3& to) const final {
     return from.z > 0 ? warp::pdf_cosine_hemisphere(to) : 0.0;
   }
+  BsdfValue evaluate(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const final {
+    if (!(w_light.z > 0 && w_eye.z > 0)) return {};
+    return {f_s(x, w_light, w_eye), warp::pdf_cosine_hemisphere(w_light),
+            warp::pdf_cosine_hemisphere(w_eye)};
+  }
   std::optional<BsdfSample> sample(const SurfacePoint&, const Vec3& from,
                                    const Vec3& u) const final {
     if (!(from.z > 0)) return std::nullopt;

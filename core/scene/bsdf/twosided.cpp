@@ -29,6 +29,11 @@ class TwoSided final : public ReflectingBsdf {
   double pdf_sigma(const SurfacePoint& x, const Vec3& from, const Vec3& to) const override {
     return from.z > 0 ? front_->pdf_sigma(x, from, to) : back_->pdf_sigma(x, flip(from), flip(to));
   }
+  /// Nothing is transmitted: where f is not black both directions are on one side.
+  BsdfValue evaluate(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const override {
+    return w_light.z > 0 ? front_->evaluate(x, w_light, w_eye)
+                         : back_->evaluate(x, flip(w_light), flip(w_eye));
+  }
   RGB f_dirac(const SurfacePoint& x, const Vec3& w_light, const Vec3& w_eye) const override {
     return w_light.z > 0 ? front_->f_dirac(x, w_light, w_eye)
                          : back_->f_dirac(x, flip(w_light), flip(w_eye));

@@ -72,6 +72,26 @@ TEST(BsdfLaws, SampleAnswersThePdfOfWhatItSampled) {
     }
 }
 
+/// What is evaluated at once is what is evaluated one by one.
+TEST(BsdfLaws, EvaluateAnswersAllThree) {
+  Random random;
+  auto bsdfs = smooth_bsdfs();
+  bsdfs.push_back(make_twosided(make_diffuse({0.2, 0.5, 0.8})));
+  for (const auto& bsdf : bsdfs) {
+    int bright = 0;
+    for (int i = 0; i < 5000; ++i) {
+      const Vec3 light = random.any_direction(), eye = random.any_direction();
+      const BsdfValue all = bsdf->evaluate(kAnyPoint, light, eye);
+      EXPECT_EQ(all.f, bsdf->f_s(kAnyPoint, light, eye)) << bsdf->name();
+      if (is_black(all.f)) continue;
+      ++bright;
+      EXPECT_EQ(all.pdf_to_light, bsdf->pdf_sigma(kAnyPoint, eye, light)) << bsdf->name();
+      EXPECT_EQ(all.pdf_to_eye, bsdf->pdf_sigma(kAnyPoint, light, eye)) << bsdf->name();
+    }
+    EXPECT_GT(bright, 500) << bsdf->name();
+  }
+}
+
 TEST(BsdfLaws, ReflectingBsdfsAreBlackFromBehind) {
   const auto bsdfs = smooth_bsdfs();
   for (int i = 0; i < 3; ++i)

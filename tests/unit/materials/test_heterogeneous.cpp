@@ -250,6 +250,8 @@ TEST(Heterogeneous, EqualVoxelsAreAHomogeneousMedium) {
       const Ray ray{uniform3(rng) - 0.5, warp::sample_sphere(uniform2(rng))};
       EXPECT_EQ(m->sigma_t(ray.o), uniform->sigma_t(ray.o));
       EXPECT_EQ(m->sigma_s(ray.o), uniform->sigma_s(ray.o));
+      EXPECT_EQ(m->coefficients(ray.o).sigma_t, m->sigma_t(ray.o));
+      EXPECT_EQ(m->coefficients(ray.o).sigma_s, m->sigma_s(ray.o));
       const double t1 = rng.uniform();
       expect_near(m->optical_depth(ray, 0, t1), uniform->optical_depth(ray, 0, t1), 1e-14, "");
       for (int channel = 0; channel < 3; ++channel) {

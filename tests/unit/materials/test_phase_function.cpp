@@ -99,6 +99,28 @@ TEST(PhaseFunction, TableTriples) {
   }
 }
 
+/// What is evaluated at once is what is evaluated one by one, from either side.
+TEST(PhaseFunction, EvaluateAnswersBothWhicheverWayLightGoes) {
+  const PhaseTable colours{{0, 0.5, 2}, {RGB(9, 8, 7), RGB(1, 0, 0.5), RGB(0, 9, 1)}};
+  const std::shared_ptr<const PhaseFunction> phases[] = {
+      make_isotropic_phase(),
+      make_henyey_greenstein(0.7),
+      make_rayleigh_phase(),
+      make_draine(0.5, 2),
+      make_blend_phase(make_henyey_greenstein(0.9), make_rayleigh_phase(), 0.3),
+      make_tabulated_phase({0.5, 1, 1.5}),
+      make_table_phase(colours)};
+  for (const auto& phase : phases)
+    for (const Vec3& a : kFroms)
+      for (const Vec3& b : kFroms) {
+        const PhaseValue there = phase->evaluate(a, -b), back = phase->evaluate(-b, a);
+        EXPECT_EQ(there.f_p, phase->f_p(a, -b));
+        EXPECT_EQ(there.pdf_sigma, phase->pdf_sigma(a, -b));
+        EXPECT_EQ(back.f_p, there.f_p);
+        EXPECT_EQ(back.pdf_sigma, there.pdf_sigma);
+      }
+}
+
 TEST(PhaseFunction, TableWithAChannelThatNeverScattersBack) {
   PhaseTable table{
       {0, 0.01, 0.5, 1.9, 2},
