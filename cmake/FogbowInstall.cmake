@@ -16,4 +16,4 @@ install(FILES LICENSE DESTINATION ${CMAKE_INSTALL_DOCDIR})
 configure_package_config_file(cmake/FogbowConfig.cmake.in FogbowConfig.cmake INSTALL_DESTINATION ${package_dir})
 write_basic_package_version_file(FogbowConfigVersion.cmake COMPATIBILITY SameMinorVersion)
 install(FILES ${CMAKE_CURRENT_BINARY_DIR}/FogbowConfig.cmake ${CMAKE_CURRENT_BINARY_DIR}/FogbowConfigVersion.cmake
-  cmake/FindOpenImageIO.cmake DESTINATION ${package_dir})
+  cmake/FindBlosc.cmake cmake/FindOpenImageIO.cmake DESTINATION ${package_dir})

@@ -5,6 +5,7 @@
 #include <cmath>
 #include <cstring>
 
+#include "core/scene_io/byte_cursor.h"
 #include "core/util/error.h"
 
 namespace fogbow {
@@ -21,16 +22,6 @@ std::uint32_t little_endian(std::string_view bytes) {
   for (std::size_t i = bytes.size(); i-- > 0;)
     result = result << 8 | static_cast<unsigned char>(bytes[i]);
   return result;
-}
-
-/// IEEE 754 binary16.
-float from_half(std::uint32_t half) {
-  const int exponent = half >> 10 & 31;
-  const double fraction = half & 1023;
-  double value =
-      exponent == 0 ? std::ldexp(fraction, -24) : std::ldexp(1024 + fraction, exponent - 25);
-  if (exponent == 31) value = fraction == 0 ? kInfinity : std::nan("");
-  return static_cast<float>(half & 0x8000 ? -value : value);
 }
 
 class VolParser {
