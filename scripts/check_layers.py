@@ -28,7 +28,7 @@ ANYTHING = "tests"  # may include every layer, and is included by none
 # Headers that cost seconds to compile or change how code is compiled: (header, files that may include it).
 CONFINED = [
     (r"embree\d*/", r"core/geometry/accel_embree\.cpp|tests/benchmarks/embree_clock\.cpp"),
-    (r"CGAL/", r"core/geometry/mesh_check_cgal\.cpp"),
+    (r"CGAL/", r"core/geometry/mesh_(check|repair)_cgal\.cpp"),
     (r"OpenImageIO/", r"core/image/image_io_oiio\.cpp"),
     (r"pugixml", r"core/scene_io/[a-z0-9_]+\.cpp"),
     (r"ceres/|Eigen/", r"media/phase_fit_ceres\.cpp|mlt/manifold/.*|tests/.*"),

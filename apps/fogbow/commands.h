@@ -32,6 +32,7 @@ struct SceneArguments {
   std::optional<std::array<int, 4>> crop;
   bool strict = false;
   bool sandbox_paths = false;
+  bool repair = false;
 };
 
 /// What decides how a scene is rendered, and how much memory that takes.

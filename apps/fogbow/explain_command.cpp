@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <cmath>
 #include <cstdio>
 
@@ -82,6 +83,31 @@ void find_unreachable(const LightCensus& census, const Scene& scene,
        "give the lights a size: a small sphere with an area emitter of the same power"});
 }
 
+bool any_contains(const std::vector<std::string>& messages, const char* text) {
+  return std::ranges::any_of(
+      messages, [&](const std::string& m) { return m.find(text) != std::string::npos; });
+}
+
+/// What the boundaries of media have that should be known or mended.
+std::vector<Finding> findings_of_boundaries(const Scene& scene) {
+  std::vector<Finding> findings;
+  for (const std::string& note : scene.overlap_notes())
+    findings.push_back(
+        {note, "an integer \"priority\" on the shapes says otherwise: the greater one holds"});
+  const std::vector<std::string>& warnings = scene.warnings();
+  if (any_contains(warnings, "overlap") || any_contains(warnings, "runs through"))
+    findings.push_back({"boundaries overlap in a way that cannot be resolved",
+                        "mend what the warning names; then one volume holds where several are, by "
+                        "\"priority\" or as the smaller one"});
+  if (any_contains(warnings, "doubtful boundary"))
+    findings.push_back(
+        {"boundaries of media are open or wound both ways: what medium a ray is in "
+         "depends on where it came in",
+         "try --repair, which closes small faults of meshes and says what it did; "
+         "let open sheets end on, or behind, opaque walls"});
+  return findings;
+}
+
 std::vector<Finding> findings_of(const LightCensus& census, const Scene& scene) {
   std::vector<Finding> findings;
   find_caustics(census, findings);
@@ -126,6 +152,7 @@ ExitCode run_explain(const ExplainArguments& arguments) {
   if (!log.warnings().empty())
     std::printf("- %s about the scene, above\n  -> mend these first: `fogbow check` lists them\n",
                 count_of(log.warnings().size(), "warning").c_str());
+  print(findings_of_boundaries(*scene));
   print(findings_of(census, *scene));
   return ExitCode::Done;
 }

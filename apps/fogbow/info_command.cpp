@@ -29,7 +29,8 @@ std::string tally_text(const std::map<std::string, std::uint64_t>& tally) {
 
 void print_surfaces(const Scene& scene) {
   std::map<std::string, std::uint64_t> primitives, materials;
-  for (const Surface& surface : scene.surfaces()) {
+  for (std::uint32_t i = 0; i < scene.declared_surfaces(); ++i) {
+    const Surface& surface = scene.surface(i);
     const std::uint64_t count = surface.shape->primitive_count();
     switch (surface.shape->primitive_kind()) {
       case PrimitiveKind::Triangles: primitives["triangles"] += count; break;
@@ -39,7 +40,7 @@ void print_surfaces(const Scene& scene) {
     ++materials[surface.bsdf->name()];
   }
   print_row("surfaces",
-            count_of(scene.surfaces().size(), "surface") + ": " + tally_text(primitives));
+            count_of(scene.declared_surfaces(), "surface") + ": " + tally_text(primitives));
   print_row("materials", tally_text(materials));
 }
 

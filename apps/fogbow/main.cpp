@@ -57,6 +57,8 @@ void add_scene_arguments(CLI::App& app, SceneArguments& scene) {
   add_parsed(app, "--crop", "X,Y,W,H", "Part of the picture to render, in pixels",
              [&scene](const std::string& text) { scene.crop = parse_rectangle(text); });
   app.add_flag("--strict", scene.strict, "Treat warnings about the scene as errors");
+  app.add_flag("--repair", scene.repair,
+               "Close meshes that bound media or refract where they have small faults");
   app.add_flag("--sandbox-paths", scene.sandbox_paths,
                "Refuse files that are not in the scene's folder");
 }

@@ -14,6 +14,7 @@ std::unique_ptr<const Scene> load_scene(const SceneArguments& arguments) {
   options.size = arguments.size;
   options.crop = arguments.crop;
   options.sandbox_paths = arguments.sandbox_paths;
+  options.repair = arguments.repair;
   options.read_image = read_image;
   std::vector<std::string> warnings;
   SceneDescription description =

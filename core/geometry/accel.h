@@ -24,13 +24,23 @@ struct Hit {
   Vec2 local;
 };
 
+/// Lets one shape bear several names, depending on the place that is hit.
+class HitNames {
+ public:
+  virtual ~HitNames() = default;
+  /// What a hit answers in `id.shape`, in place of the shape that is there now.
+  virtual std::uint32_t name(const Hit& hit) const = 0;
+  /// The shape behind a name.
+  virtual std::uint32_t shape(std::uint32_t name) const = 0;
+};
+
 /// Ray queries over shapes; the index of a shape in the list given is its id. Thread-safe once
 /// built. Every candidate near either end of the ray is decided in double precision, so that a ray
 /// neither meets the primitive it leaves nor the one it goes to.
 class Accel {
  public:
-  /// The shapes must outlive the accelerator.
-  explicit Accel(std::span<const Shape* const> shapes);
+  /// The shapes must outlive the accelerator, and so must the names where there are some.
+  explicit Accel(std::span<const Shape* const> shapes, const HitNames* names = nullptr);
   ~Accel();
   Accel(Accel&&) noexcept;
   Accel& operator=(Accel&&) noexcept;
@@ -47,8 +57,11 @@ class Accel {
   std::size_t memory_bytes() const;
 
  private:
+  std::optional<Hit> intersect_shape(const Ray& ray, PrimitiveId from) const;
+
   struct Impl;
   std::unique_ptr<Impl> impl_;
+  const HitNames* names_;
 };
 
 }  // namespace fogbow

@@ -186,6 +186,11 @@ void trace_occlusion(RTCScene scene, Query& query, RTCRay& ray) {
 constexpr RTCSceneFlags kFilterFlag = RTC_SCENE_FLAG_CONTEXT_FILTER_FUNCTION;
 #endif
 
+PrimitiveId shape_behind(const HitNames* names, PrimitiveId id) {
+  if (!names || id == kNoPrimitive) return id;
+  return {names->shape(id.shape), id.primitive};
+}
+
 void check_ray(const Ray& ray) {
   FOGBOW_CHECK(is_finite(ray.o) && is_finite(ray.d) && std::isfinite(ray.t_min) &&
                !std::isnan(ray.t_max));
@@ -376,12 +381,21 @@ struct Accel::Impl {
   }
 };
 
-Accel::Accel(std::span<const Shape* const> shapes) : impl_(std::make_unique<Impl>(shapes)) {}
+Accel::Accel(std::span<const Shape* const> shapes, const HitNames* names)
+    : impl_(std::make_unique<Impl>(shapes)), names_(names) {}
 Accel::~Accel() = default;
 Accel::Accel(Accel&&) noexcept = default;
 Accel& Accel::operator=(Accel&&) noexcept = default;
 
 std::optional<Hit> Accel::intersect(const Ray& ray, PrimitiveId from) const {
+  if (!names_) [[likely]]
+    return intersect_shape(ray, from);
+  auto hit = intersect_shape(ray, shape_behind(names_, from));
+  if (hit) hit->id.shape = names_->name(*hit);
+  return hit;
+}
+
+std::optional<Hit> Accel::intersect_shape(const Ray& ray, PrimitiveId from) const {
   check_ray(ray);
   if (!(ray.t_max > ray.t_min)) return std::nullopt;
   Query query = impl_->make_query(ray, from, kNoPrimitive, Purpose::Nearest);
@@ -400,6 +414,8 @@ bool Accel::occluded(const Vec3& a, const Vec3& b, PrimitiveId from, PrimitiveId
   if (distance == 0) return false;
   const Ray ray{a, (b - a) / distance, 0, distance};
   check_ray(ray);
+  from = shape_behind(names_, from);
+  to = shape_behind(names_, to);
   Query query = impl_->make_query(ray, from, to, Purpose::Occlusion);
   RTCRay embree_ray = impl_->prepare(query);
   trace_occlusion(impl_->scene, query, embree_ray);

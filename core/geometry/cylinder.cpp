@@ -92,16 +92,17 @@ class Cylinder final : public Shape {
   Tessellation tessellate() const override {
     Tessellation result;
     constexpr std::uint32_t n = detail::kCircleSegments;
+    const auto [s, t] = detail::across_axis(axis_);
     for (std::uint32_t i = 0; i < n; ++i) {
       const Vec2 p = radius_ * detail::on_circle(i);
       for (const double end : {0.0, length_})
-        result.vertices.push_back(p0_ + p.x * s_ + p.y * t_ + end * axis_);
+        result.vertices.push_back(p0_ + p.x * s + p.y * t + end * axis_);
       const std::uint32_t a = 2 * i, b = 2 * ((i + 1) % n);
       result.triangles.push_back({a, b, b + 1});
       result.triangles.push_back({a, b + 1, a + 1});
     }
-    if (flip_ != (dot(cross(s_, t_), axis_) < 0))
-      for (auto& t : result.triangles) std::swap(t[1], t[2]);
+    if (flip_ != (dot(cross(s, t), axis_) < 0))
+      for (auto& triangle : result.triangles) std::swap(triangle[1], triangle[2]);
     return result;
   }
 

@@ -83,17 +83,29 @@ class Disk final : public Shape {
 
   Tessellation tessellate() const override {
     Tessellation result{{center_}, {}};
+    const auto [e1, e2] = corner_axes();
     for (std::uint32_t i = 0; i < detail::kCircleSegments; ++i) {
       const Vec2 p = detail::on_circle(i);
-      result.vertices.push_back(center_ + p.x * e1_ + p.y * e2_);
+      result.vertices.push_back(center_ + p.x * e1 + p.y * e2);
       result.triangles.push_back({0, 1 + i, 1 + (i + 1) % detail::kCircleSegments});
     }
-    if (dot(n_, across_) < 0)
+    if (dot(n_, cross(e1, e2)) < 0)
       for (auto& t : result.triangles) std::swap(t[1], t[2]);
     return result;
   }
 
  private:
+  /// Of the tessellation: a circle's do not depend on how it is turned around its axis.
+  std::array<Vec3, 2> corner_axes() const {
+    constexpr double kRound = 1e-6;
+    const double radius = length(e1_);
+    if (std::fabs(length(e2_) - radius) > kRound * radius ||
+        std::fabs(dot(e1_, e2_)) > kRound * sqr(radius))
+      return {e1_, e2_};
+    const auto [s, t] = detail::across_axis(n_);
+    return {radius * s, radius * t};
+  }
+
   Vec3 center_, e1_, e2_;
   Vec3 across_;  ///< e1 × e2
   Vec3 n_;

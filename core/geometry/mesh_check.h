@@ -17,6 +17,13 @@ struct BoundaryDefect {
   std::string message;
 };
 
+/// Where a boundary ends.
+struct BorderEdge {
+  std::size_t shape;  ///< index into the group
+  Vec3 a, b;
+  Vec3 inward, normal;  ///< unit: along its triangle, away from the edge; of the triangle
+};
+
 /// The union of shapes that separate one interior from one exterior medium.
 class BoundaryGroup {
  public:
@@ -28,6 +35,7 @@ class BoundaryGroup {
   BoundaryGroup& operator=(BoundaryGroup&&) noexcept;
 
   const std::vector<BoundaryDefect>& defects() const;
+  const std::vector<BorderEdge>& borders() const;
   bool closed() const;
   /// Enclosed volume, world units cubed; only for closed groups.
   double volume() const;
@@ -36,6 +44,8 @@ class BoundaryGroup {
   /// Whether this boundary runs partly inside and partly outside of `other`, which is closed; told
   /// from points spread over it, so that a slight touch may escape.
   bool crosses(const BoundaryGroup& other) const;
+  /// Whether no part of this boundary lies outside of `other`; told in the same way.
+  bool lies_within(const BoundaryGroup& other) const;
 
  private:
   struct Impl;

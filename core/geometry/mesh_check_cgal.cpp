@@ -13,6 +13,7 @@
 
 #include "core/geometry/mesh_check.h"
 #include "core/geometry/sphere.h"
+#include "core/geometry/welder.h"
 #include "core/math/spread.h"
 #include "core/util/check.h"
 
@@ -37,45 +38,10 @@ constexpr double kAside = 1e-4;
 
 Point to_point(const Vec3& p) { return {p.x, p.y, p.z}; }
 
-/// Makes one vertex of all those within `tolerance` of the first of them.
-class Welder {
- public:
-  explicit Welder(double tolerance) : tolerance_(tolerance), cell_(64 * tolerance) {}
-
-  std::uint32_t add(const Vec3& p) {
-    // Nearly always all corners of the search box lie in one cell.
-    const Vec3 lo = glm::floor((p - tolerance_) / cell_), hi = glm::floor((p + tolerance_) / cell_);
-    for (double x = lo.x; x <= hi.x; ++x)
-      for (double y = lo.y; y <= hi.y; ++y)
-        for (double z = lo.z; z <= hi.z; ++z)
-          if (const auto cell = cells_.find({x, y, z}); cell != cells_.end())
-            for (const std::uint32_t i : cell->second)
-              if (length(vertices[i] - p) <= tolerance_) return i;
-    const auto index = static_cast<std::uint32_t>(vertices.size());
-    cells_[glm::floor(p / cell_)].push_back(index);
-    vertices.push_back(p);
-    return index;
-  }
-
-  std::vector<Vec3> vertices;
-
- private:
-  struct Hash {
-    std::size_t operator()(const Vec3& c) const {
-      std::size_t h = 0;
-      for (int i = 0; i < 3; ++i)
-        h = h * 0x9E3779B97F4A7C15u + std::hash<double>{}(c[i]);  // odd constant: mixes all bits
-      return h;
-    }
-  };
-  double tolerance_, cell_;
-  std::unordered_map<Vec3, std::vector<std::uint32_t>, Hash> cells_;
-};
-
-/// How often an edge is run through in each direction, and a shape that has it.
+/// How often an edge is run through in each direction, and a triangle that has it.
 struct EdgeUse {
   std::uint32_t forward = 0, backward = 0;
-  std::uint32_t shape = 0;
+  std::uint32_t triangle = 0;
 };
 
 using Counts = std::map<std::uint32_t, std::size_t>;  ///< by shape
@@ -84,6 +50,7 @@ using Counts = std::map<std::uint32_t, std::size_t>;  ///< by shape
 
 struct BoundaryGroup::Impl {
   std::vector<BoundaryDefect> defects;
+  std::vector<BorderEdge> borders;
   Bounds bounds;
   std::vector<std::array<Vec3, 2>> both_sides;  ///< of points spread over the surface
   std::vector<const Sphere*> spheres;           ///< all shapes of the group, where all are spheres
@@ -166,6 +133,15 @@ struct BoundaryGroup::Impl {
     vertices = std::move(welder.vertices);
   }
 
+  void add_border(std::uint64_t edge, std::uint32_t triangle) {
+    const Vec3 &a = vertices[edge >> 32], &b = vertices[edge & 0xFFFFFFFFu];
+    Vec3 inward(0);
+    for (const std::uint32_t v : triangles[triangle]) inward += vertices[v] - a;
+    const Vec3 along = normalize(b - a);
+    inward -= dot(inward, along) * along;
+    borders.push_back({shape_of[triangle], a, b, normalize(inward), normalize(normal(triangle))});
+  }
+
   /// False if the orientation is inconsistent.
   bool check_edges() {
     std::unordered_map<std::uint64_t, EdgeUse> edges;
@@ -175,16 +151,18 @@ struct BoundaryGroup::Impl {
         const std::uint32_t a = triangles[i][k], b = triangles[i][(k + 1) % 3];
         EdgeUse& use = edges[std::uint64_t{std::min(a, b)} << 32 | std::max(a, b)];
         ++(a < b ? use.forward : use.backward);
-        use.shape = shape_of[i];
+        use.triangle = static_cast<std::uint32_t>(i);
       }
     Counts open, crowded, inconsistent;
     for (const auto& [edge, use] : edges) {
-      if (use.forward + use.backward == 1)
-        ++open[use.shape];
-      else if (use.forward + use.backward > 2)
-        ++crowded[use.shape];
+      const std::uint32_t shape = shape_of[use.triangle];
+      if (use.forward + use.backward == 1) {
+        ++open[shape];
+        add_border(edge, use.triangle);
+      } else if (use.forward + use.backward > 2)
+        ++crowded[shape];
       else if (use.forward != use.backward)
-        ++inconsistent[use.shape];
+        ++inconsistent[shape];
     }
     report(BoundaryDefect::Kind::Open, open, "border edge", "border edges");
     report(BoundaryDefect::Kind::NonManifold, crowded, "edge of more than two triangles",
@@ -304,6 +282,7 @@ BoundaryGroup::BoundaryGroup(BoundaryGroup&&) noexcept = default;
 BoundaryGroup& BoundaryGroup::operator=(BoundaryGroup&&) noexcept = default;
 
 const std::vector<BoundaryDefect>& BoundaryGroup::defects() const { return impl_->defects; }
+const std::vector<BorderEdge>& BoundaryGroup::borders() const { return impl_->borders; }
 bool BoundaryGroup::closed() const { return impl_->closed; }
 
 double BoundaryGroup::volume() const {
@@ -330,6 +309,17 @@ bool BoundaryGroup::crosses(const BoundaryGroup& other) const {
     if (inside && outside) return true;
   }
   return false;
+}
+
+bool BoundaryGroup::lies_within(const BoundaryGroup& other) const {
+  if (!impl_->bounds.overlaps(other.impl_->bounds)) return false;
+  bool inside = false;
+  for (const auto& [front, back] : impl_->both_sides) {
+    const int sides = other.contains(front) + other.contains(back);
+    if (sides == 0) return false;
+    inside |= sides == 2;
+  }
+  return inside;
 }
 
 }  // namespace fogbow

@@ -130,6 +130,7 @@ bool sample_emitter(const Scene& scene, SampleStream& u, SubpathVertex& start) {
   x.kind = vertex_kind(emitter.kind());
   x.point = point->surface;
   x.id = point->id;
+  if (x.on_surface()) x.id.shape = scene.name_at(x.id.shape, x.point);
   if (x.on_surface()) x.point.shape = scene.surface(x.id.shape).shape.get();
   x.emitter = static_cast<int>(index);
   const bool bounds_media = x.on_surface() && scene.surface(x.id.shape).medium_boundary;

@@ -1,5 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
+#include <memory>
 #include <optional>
 
 #include "core/geometry/shape.h"
@@ -81,6 +82,13 @@ class Bsdf {
 
   /// Index of refraction of the interior over that of the exterior; 1 where nothing refracts.
   virtual double eta() const { return 1; }
+  /// Index of refraction of the exterior itself, where the BSDF knows it.
+  virtual double n_exterior() const { return 1; }
+  /// The same surface between other (different) indices of refraction; null where that is not
+  /// defined.
+  virtual std::shared_ptr<const Bsdf> between(double /*n_interior*/, double /*n_exterior*/) const {
+    return nullptr;
+  }
   /// Of the microfacets that all smooth scattering comes from; 1 where it does not come from such.
   virtual double roughness() const { return 1; }
   /// Hemispherical reflectance or tint, for albedo layers and hints only.

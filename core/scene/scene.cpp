@@ -37,21 +37,16 @@ struct Scene::Sighting {
 
 Scene::Scene(SceneDescription description, bool strict) : description_(std::move(description)) {
   check_description();
-  std::vector<const Shape*> shapes, boundaries;
-  for (std::uint32_t i = 0; i < description_.surfaces.size(); ++i) {
-    const Surface& s = description_.surfaces[i];
-    shapes.push_back(s.shape.get());
-    has_null_surfaces_ |= s.bsdf->has_passage();
-    if (!s.medium_boundary) continue;
-    boundaries.push_back(s.shape.get());
-    boundary_shapes_.push_back(i);
-  }
+  declared_surfaces_ = surfaces().size();
+  BoundaryReport report(description_.surfaces);
+  overlaps_ = std::move(report.overlaps());
+  build_accels();
   list_media();
-  accel_ = std::make_unique<Accel>(shapes);
-  boundary_accel_ = std::make_unique<Accel>(boundaries);
   measure();
   place_anchors();
-  const BoundaryReport report = check_boundaries();
+  for (std::string& message : report.warnings(*accel_)) warn(std::move(message));
+  for (const std::string& note : report.notes()) log_info(note);
+  overlap_notes_ = report.notes();
   check_camera(report);
   check_point_lights(report);
   collect_emitters(report);
@@ -60,6 +55,30 @@ Scene::Scene(SceneDescription description, bool strict) : description_(std::move
 }
 
 Scene::~Scene() = default;
+
+void Scene::build_accels() {
+  std::vector<const Shape*> shapes, boundaries;
+  const auto shape_of = [&](std::uint32_t i) {
+    return (overlaps_ ? overlaps_->shape_of(i) : surface(i).shape).get();
+  };
+  for (std::uint32_t i = 0; i < declared_surfaces_; ++i) shapes.push_back(shape_of(i));
+  for (std::uint32_t i = 0; i < surfaces().size(); ++i) {
+    has_null_surfaces_ |= surface(i).bsdf->has_passage();
+    const std::uint32_t declared = overlaps_ ? overlaps_->shape(i) : i;
+    if (!surface(i).medium_boundary ||
+        std::ranges::find(boundary_shapes_, declared) != boundary_shapes_.end())
+      continue;
+    boundary_shapes_.push_back(declared);
+  }
+  std::ranges::sort(boundary_shapes_);
+  for (const std::uint32_t i : boundary_shapes_) boundaries.push_back(shape_of(i));
+  accel_ = std::make_unique<Accel>(shapes, overlaps_.get());
+  boundary_accel_ = std::make_unique<Accel>(boundaries);
+}
+
+std::uint32_t Scene::name_at(std::uint32_t shape, const SurfacePoint& x) const {
+  return overlaps_ ? overlaps_->name({0, {shape, x.primitive}, x.local}) : shape;
+}
 
 void Scene::warn(std::string message) {
   log_warning(message);
@@ -106,15 +125,17 @@ std::optional<Scene::Sighting> Scene::look(const Vec3& p, const Vec3& target,
                                            PrimitiveId on) const {
   const double distance = length(target - p);
   if (!(distance > 0)) return std::nullopt;
-  const auto place = std::ranges::lower_bound(boundary_shapes_, on.shape);
+  const std::uint32_t own = overlaps_ && on != kNoPrimitive ? overlaps_->shape(on.shape) : on.shape;
+  const auto place = std::ranges::lower_bound(boundary_shapes_, own);
   PrimitiveId from = kNoPrimitive;
-  if (place != boundary_shapes_.end() && *place == on.shape)
+  if (place != boundary_shapes_.end() && *place == own)
     from = {static_cast<std::uint32_t>(place - boundary_shapes_.begin()), on.primitive};
   const Ray ray{p, (target - p) / distance, 0, kInfinity};
   const auto hit = boundary_accel_->intersect(ray, from);
   if (!hit) return std::nullopt;
-  const PrimitiveId id{boundary_shapes_[hit->id.shape], hit->id.primitive};
+  PrimitiveId id{boundary_shapes_[hit->id.shape], hit->id.primitive};
   const SurfacePoint x = surface(id.shape).shape->surface_point(id.primitive, hit->local);
+  if (overlaps_) id.shape = overlaps_->name({hit->t, id, hit->local});
   const double cosine = dot(ray.d, x.n_g);
   const Surface& s = surface(id.shape);
   return Sighting{cosine > 0 ? s.interior.get() : s.exterior.get(),
@@ -145,14 +166,8 @@ const Medium* Scene::medium_at(const Vec3& p, PrimitiveId on) const {
   return description_.sensor_medium_declared ? sensor_medium() : nullptr;
 }
 
-Scene::BoundaryReport Scene::check_boundaries() {
-  BoundaryReport report(description_.surfaces);
-  for (std::string& message : report.messages()) warn(std::move(message));
-  return report;
-}
-
 void Scene::compare(const BoundaryReport& report, const Vec3& p, const std::string& what) {
-  const auto holder = report.medium_around(p);
+  const auto holder = overlaps_ ? overlaps_->medium_at(p) : report.medium_around(p);
   if (holder && *holder != medium_at(p))
     warn(what + " lies within the closed boundary of " + describe(*holder) +
          ", but what it sees of the boundaries says " + describe(medium_at(p)) +
@@ -185,9 +200,13 @@ void Scene::check_point_lights(const BoundaryReport& report) {
 // --- Emitters
 
 void Scene::collect_emitters(const BoundaryReport& report) {
-  emitter_of_surface_.assign(description_.surfaces.size(), -1);
-  for (std::uint32_t i = 0; i < description_.surfaces.size(); ++i) {
+  emitter_of_surface_.assign(surfaces().size(), -1);
+  for (std::uint32_t i = 0; i < surfaces().size(); ++i) {
     if (!description_.surfaces[i].emitter) continue;
+    if (i >= declared_surfaces_) {
+      emitter_of_surface_[i] = emitter_of_surface_[overlaps_->shape(i)];
+      continue;
+    }
     emitter_of_surface_[i] = static_cast<int>(emitters_.size());
     emitters_.push_back(description_.surfaces[i].emitter);
     emitters_.back()->bind_shape(i);
@@ -228,7 +247,7 @@ bool Scene::crosses_boundary(const Bounds& box) const {
 /// over the emitter.
 void Scene::locate_emitters() {
   medium_around_emitter_.assign(emitters_.size(), std::nullopt);
-  for (std::uint32_t i = 0; i < description_.surfaces.size(); ++i) {
+  for (std::uint32_t i = 0; i < declared_surfaces_; ++i) {
     const int emitter = emitter_of_surface_[i];
     if (emitter < 0 || surface(i).medium_boundary) continue;
     const Shape& shape = *surface(i).shape;
@@ -265,7 +284,7 @@ void Scene::drop_infinite_emitters_in_fog() {
 Bounds Scene::emission_bounds(const Medium* medium, const BoundaryReport& report) const {
   Bounds inside;
   bool bounded = medium != sensor_medium();
-  for (std::uint32_t i = 0; i < surfaces().size(); ++i) {
+  for (std::uint32_t i = 0; i < declared_surfaces_; ++i) {
     if (surface(i).medium_boundary && surface(i).interior.get() == medium) {
       inside.extend(surface(i).shape->bounds());
       bounded &= report.closed(i);

@@ -25,6 +25,7 @@ struct Surface {
   /// the medium unchanged.
   bool medium_boundary = false;
   std::shared_ptr<const Medium> interior, exterior;
+  int priority = 0;  ///< where volumes overlap the greater one holds
   std::string id;
   SourceLocation where;
 };
@@ -48,6 +49,8 @@ struct SceneDescription {
   std::uint64_t content_hash = 0;
 };
 
+class Overlaps;
+
 /// An immutable scene, ready for rays.
 class Scene {
  public:
@@ -59,7 +62,11 @@ class Scene {
 
   const Accel& accel() const { return *accel_; }
   const Surface& surface(std::uint32_t shape) const { return description_.surfaces[shape]; }
+  /// Those of the description, and what they are where volumes overlap.
   const std::vector<Surface>& surfaces() const { return description_.surfaces; }
+  std::size_t declared_surfaces() const { return declared_surfaces_; }
+  /// Under what name rays would meet a point of a shape of the description.
+  std::uint32_t name_at(std::uint32_t shape, const SurfacePoint& x) const;
   SurfacePoint surface_point(const Hit& hit) const {
     const Shape& shape = *surface(hit.id.shape).shape;
     SurfacePoint x = shape.surface_point(hit.id.primitive, hit.local);
@@ -104,6 +111,8 @@ class Scene {
   double radius() const { return radius_; }
   /// What the load-time checks found, one line each with shape and place.
   const std::vector<std::string>& warnings() const { return warnings_; }
+  /// What holds where volumes overlap, one line each.
+  const std::vector<std::string>& overlap_notes() const { return overlap_notes_; }
 
  private:
   struct BoundaryReport;
@@ -113,7 +122,7 @@ class Scene {
   /// What is seen from p in the direction of an anchor.
   struct Sighting;
   std::optional<Sighting> look(const Vec3& p, const Vec3& target, PrimitiveId on) const;
-  BoundaryReport check_boundaries();
+  void build_accels();
   void check_camera(const BoundaryReport& report);
   void check_point_lights(const BoundaryReport& report);
   void compare(const BoundaryReport& report, const Vec3& p, const std::string& what);
@@ -129,6 +138,8 @@ class Scene {
 
   SceneDescription description_;
   std::vector<std::shared_ptr<const Medium>> media_;
+  std::size_t declared_surfaces_ = 0;
+  std::unique_ptr<const Overlaps> overlaps_;
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;       ///< of the medium boundaries alone
   std::vector<std::uint32_t> boundary_shapes_;  ///< ids in accel_ of boundary_accel_'s shapes
@@ -143,7 +154,7 @@ class Scene {
   Bounds bounds_;
   double radius_ = 0;
   bool has_null_surfaces_ = false;
-  std::vector<std::string> warnings_;
+  std::vector<std::string> warnings_, overlap_notes_;
 };
 
 }  // namespace fogbow

@@ -24,6 +24,10 @@ struct LoadOptions {
   ImageReader read_image;                          ///< none: scenes with pictures are refused
   bool strict = false;                             ///< warnings become errors
   bool sandbox_paths = false;                      ///< files must lie inside the scene's folder
+  bool repair =
+      false;  ///< meshes that bound media or refract are made closed where they nearly are
+  /// Is told of each repair, which goes through log() as well.
+  std::function<void(const std::string&)> on_repair;
 };
 
 /// Reads a Mitsuba scene; throws Error(Scene or InputOutput) with file:line:column. Every property

@@ -27,6 +27,9 @@ using PluginTable = std::map<std::string, std::function<Constructor>>;
 struct FileContext {
   const FileResolver& files;
   ContentHash& hash;
+  bool repair = false;  ///< meshes, whether or not they ask for it
+  /// Is told what was done.
+  std::function<void(const std::string&)> repaired = {};
 };
 
 /// What emitters and textures need: files, whose bytes go into the hash, and a reader of pictures.

@@ -22,15 +22,18 @@ std::shared_ptr<const Bsdf> twosided(Properties& p) {
   return make_twosided(nested.front(), nested.size() == 2 ? nested.back() : nullptr);
 }
 
+double exterior_index(Properties& p) { return index_of_refraction(p, "ext_ior", "air"); }
+
 double relative_index(Properties& p, const char* fallback = "bk7") {
   const double interior = index_of_refraction(p, "int_ior", fallback);
-  return interior / index_of_refraction(p, "ext_ior", "air");
+  return interior / exterior_index(p);
 }
 
 std::shared_ptr<const Bsdf> dielectric(Properties& p) {
   const double eta = relative_index(p);
   const auto reflectance = p.textured_color("specular_reflectance", RGB(1), 1);
-  return make_dielectric(eta, reflectance, p.textured_color("specular_transmittance", RGB(1), 1));
+  return make_dielectric(eta, reflectance, p.textured_color("specular_transmittance", RGB(1), 1),
+                         exterior_index(p));
 }
 
 struct ComplexIndex {
@@ -103,7 +106,8 @@ std::shared_ptr<const Bsdf> roughdielectric(Properties& p) {
   if (eta == 1) p.fail("int_ior", "the indices of refraction on both sides must differ");
   const auto reflectance = p.textured_color("specular_reflectance", RGB(1), 1);
   return make_rough_dielectric(rough, eta, reflectance,
-                               p.textured_color("specular_transmittance", RGB(1), 1));
+                               p.textured_color("specular_transmittance", RGB(1), 1),
+                               exterior_index(p));
 }
 
 std::shared_ptr<const Bsdf> thindielectric(Properties& p) {

@@ -1,6 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <utility>
 
+#include "core/geometry/mesh_repair.h"
 #include "core/geometry/shapes.h"
 #include "core/scene_io/diagnostics.h"
 #include "core/scene_io/mesh_file.h"
@@ -79,8 +80,8 @@ void fill_normals(TriangleMeshData& mesh) {
     if (is_black(mesh.normals[i])) mesh.normals[i] = computed[i];
 }
 
-std::shared_ptr<const Shape> mesh_shape(Properties& p, TriangleMeshData mesh, bool flip_uvs,
-                                        bool flat = false) {
+std::shared_ptr<const Shape> mesh_shape(Properties& p, const FileContext& context,
+                                        TriangleMeshData mesh, bool flip_uvs, bool flat = false) {
   const Transform to_world = p.transform("to_world");
   const bool face_normals = p.boolean("face_normals", false) || flat;
   const bool flip_normals = p.boolean("flip_normals", false);
@@ -90,6 +91,11 @@ std::shared_ptr<const Shape> mesh_shape(Properties& p, TriangleMeshData mesh, bo
   to_world_space(mesh, to_world);
   // The front is where the file's normals point, as in Mitsuba, also after a reflection.
   if (!mesh.normals.empty() && winds_against_normals(mesh)) flip_winding(mesh);
+  if (p.boolean("repair", false) || context.repair) {
+    MeshRepair done;
+    mesh = repair_mesh(std::move(mesh), done);
+    if (done.changed() || done.left_open > 0) context.repaired(done.text());
+  }
   if (!face_normals) fill_normals(mesh);
   if (flip_normals) {
     flip_winding(mesh);
@@ -111,13 +117,13 @@ std::string read_mesh_bytes(Properties& p, const FileContext& context, std::stri
 std::shared_ptr<const Shape> ply(Properties& p, const FileContext& context) {
   std::string path;
   const std::string bytes = read_mesh_bytes(p, context, path);
-  return mesh_shape(p, parse_ply(bytes, path), false);
+  return mesh_shape(p, context, parse_ply(bytes, path), false);
 }
 
 std::shared_ptr<const Shape> obj(Properties& p, const FileContext& context) {
   std::string path;
   const std::string bytes = read_mesh_bytes(p, context, path);
-  return mesh_shape(p, parse_obj(bytes, path), true);
+  return mesh_shape(p, context, parse_obj(bytes, path), true);
 }
 
 std::shared_ptr<const Shape> serialized(Properties& p, const FileContext& context) {
@@ -126,7 +132,7 @@ std::shared_ptr<const Shape> serialized(Properties& p, const FileContext& contex
   std::string path;
   const std::string bytes = read_mesh_bytes(p, context, path);
   SerializedMesh file = parse_serialized(bytes, path, index);
-  return mesh_shape(p, std::move(file.mesh), false, file.face_normals);
+  return mesh_shape(p, context, std::move(file.mesh), false, file.face_normals);
 }
 
 }  // namespace

@@ -8,6 +8,7 @@
 #include "core/scene_io/film_window.h"
 #include "core/scene_io/parse_values.h"
 #include "core/scene_io/read_property.h"
+#include "core/util/log.h"
 
 namespace fogbow {
 
@@ -65,6 +66,15 @@ void check_version(const XmlNode& root) {
   if (!consume_number(rest, version))
     throw Error(ErrorKind::Scene, root.where("version"),
                 "expected a version such as \"3.0.0\", found " + quote(text));
+}
+
+/// Of the volume that a shape bounds, where it overlaps others.
+int priority(Properties& p) {
+  const std::int64_t value = p.integer("priority", 0);
+  constexpr std::int64_t kLargest = 1'000'000;
+  if (value < -kLargest || value > kLargest)
+    p.fail("priority", "\"priority\" must lie between -1000000 and 1000000");
+  return static_cast<int>(value);
 }
 
 /// Names of the files themselves say nothing of the scene: their bytes are hashed instead.
@@ -356,11 +366,14 @@ void SceneBuilder::surface(const XmlNode& node, const Transform* instance) {
   Surface surface;
   surface.id = p.id();
   surface.where = p.where();
-  surface.shape = construct(shape_plugins(), p, FileContext{files_, object.hash});
   surface.bsdf = p.take_one<Bsdf>();
   surface.interior = p.take<Medium>("interior");
   surface.exterior = p.take<Medium>("exterior");
   surface.medium_boundary = surface.interior || surface.exterior;
+  const bool encloses = surface.medium_boundary || (surface.bsdf && surface.bsdf->eta() != 1);
+  surface.shape = construct(shape_plugins(), p,
+                            FileContext{files_, object.hash, options_.repair && encloses,
+                                        [&](const std::string& what) { repaired(surface, what); }});
   if (const Child* child = object.take_one("emitter")) {
     if (instance)
       throw Error(ErrorKind::Scene, child->where, "shapes that emit light cannot be instanced");
@@ -371,9 +384,17 @@ void SceneBuilder::surface(const XmlNode& node, const Transform* instance) {
     if (!fallback) fallback = make_diffuse(RGB(surface.emitter ? 0 : 0.5));
     surface.bsdf = fallback;
   }
+  if (surface.medium_boundary || surface.bsdf->eta() != 1) surface.priority = priority(p);
   finish(object);
   hash_.add(object.hash.value());
   scene_.surfaces.push_back(std::move(surface));
+}
+
+void SceneBuilder::repaired(const Surface& surface, const std::string& what) const {
+  const std::string message =
+      to_string(surface.where) + ": shape " + quote(surface.id) + " repaired: " + what;
+  log_info(message);
+  if (options_.on_repair) options_.on_repair(message);
 }
 
 void SceneBuilder::attach_emitter(Surface& surface, const Child& child, ContentHash& hash) {
@@ -421,6 +442,7 @@ void SceneBuilder::top_level(const XmlNode& node) {
 SceneDescription SceneBuilder::build() {
   const XmlNode& root = document_.root();
   scene_.title = *root.file;
+  if (options_.repair) hash_.add("repair");
   check_version(root);
   for (const XmlNode& node : root.children) top_level(node);
   // After the shapes, which may refer to emitters defined at top level.

@@ -70,6 +70,7 @@ class SceneBuilder {
   void shape(const XmlNode& node);
   void surface(const XmlNode& node, const Transform* instance = nullptr);
   void instance(const XmlNode& node);
+  void repaired(const Surface& surface, const std::string& what) const;
   void attach_emitter(Surface& surface, const Child& child, ContentHash& hash);
   void emitter(const XmlNode& node);
   void top_level(const XmlNode& node);

@@ -23,10 +23,11 @@ std::shared_ptr<const Bsdf> make_diffuse(const Textured<RGB>& reflectance);
 /// The same on both sides, or two; both must reflect only.
 std::shared_ptr<const Bsdf> make_twosided(std::shared_ptr<const Bsdf> front,
                                           std::shared_ptr<const Bsdf> back = nullptr);
-/// `eta`: interior over exterior index.
+/// `eta`: interior over exterior index; the exterior's own counts where volumes overlap.
 std::shared_ptr<const Bsdf> make_dielectric(double eta,
                                             const Textured<RGB>& specular_reflectance = RGB(1),
-                                            const Textured<RGB>& specular_transmittance = RGB(1));
+                                            const Textured<RGB>& specular_transmittance = RGB(1),
+                                            double n_exterior = 1);
 /// Complex index eta + i k per channel, relative to the exterior; eta = 0 and k = 1 in all channels
 /// is a perfect mirror (material "none").
 std::shared_ptr<const Bsdf> make_conductor(const Textured<RGB>& eta, const Textured<RGB>& k,
@@ -38,7 +39,7 @@ std::shared_ptr<const Bsdf> make_rough_conductor(
 std::shared_ptr<const Bsdf> make_rough_dielectric(
     const RoughnessSettings& roughness, double eta,
     const Textured<RGB>& specular_reflectance = RGB(1),
-    const Textured<RGB>& specular_transmittance = RGB(1));
+    const Textured<RGB>& specular_transmittance = RGB(1), double n_exterior = 1);
 /// Diffuse under a smooth coat of relative index `eta`; `nonlinear` tints every reflection between
 /// the two.
 std::shared_ptr<const Bsdf> make_plastic(double eta, bool nonlinear = false,

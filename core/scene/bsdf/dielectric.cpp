@@ -8,8 +8,10 @@ namespace {
 
 class Dielectric final : public Bsdf {
  public:
-  Dielectric(double eta, const Textured<RGB>& reflectance, const Textured<RGB>& transmittance)
+  Dielectric(double eta, const Textured<RGB>& reflectance, const Textured<RGB>& transmittance,
+             double n_exterior)
       : eta_(eta),
+        n_exterior_(n_exterior),
         reflectance_(checked_reflectance(reflectance)),
         transmittance_(checked_reflectance(transmittance)),
         mean_reflectance_(mean(reflectance.mean())),
@@ -55,6 +57,10 @@ class Dielectric final : public Bsdf {
   }
 
   double eta() const override { return eta_; }
+  double n_exterior() const override { return n_exterior_; }
+  std::shared_ptr<const Bsdf> between(double n_interior, double n_exterior) const override {
+    return make_dielectric(n_interior / n_exterior, reflectance_, transmittance_, n_exterior);
+  }
   RGB albedo(const SurfacePoint& x) const override {
     return glm::max(reflectance_(x), transmittance_(x));
   }
@@ -81,7 +87,7 @@ class Dielectric final : public Bsdf {
     return event_probabilities(r, mean(reflectance_(x)), mean(transmittance_(x)));
   }
 
-  double eta_;
+  double eta_, n_exterior_;
   Textured<RGB> reflectance_, transmittance_;
   double mean_reflectance_, mean_transmittance_;
   bool constant_;
@@ -90,8 +96,10 @@ class Dielectric final : public Bsdf {
 }  // namespace
 
 std::shared_ptr<const Bsdf> make_dielectric(double eta, const Textured<RGB>& specular_reflectance,
-                                            const Textured<RGB>& specular_transmittance) {
-  return std::make_shared<Dielectric>(eta, specular_reflectance, specular_transmittance);
+                                            const Textured<RGB>& specular_transmittance,
+                                            double n_exterior) {
+  return std::make_shared<Dielectric>(eta, specular_reflectance, specular_transmittance,
+                                      n_exterior);
 }
 
 }  // namespace fogbow

@@ -11,9 +11,11 @@ namespace {
 class RoughDielectric final : public Bsdf {
  public:
   RoughDielectric(const RoughnessSettings& roughness, double eta, const Textured<RGB>& reflectance,
-                  const Textured<RGB>& transmittance)
-      : facets_(roughness),
+                  const Textured<RGB>& transmittance, double n_exterior)
+      : roughness_(roughness),
+        facets_(roughness),
         eta_(eta),
+        n_exterior_(n_exterior),
         reflectance_(checked_reflectance(reflectance)),
         transmittance_(checked_reflectance(transmittance)),
         mean_reflectance_(mean(reflectance.mean())),
@@ -35,6 +37,11 @@ class RoughDielectric final : public Bsdf {
                              const Vec3& auxiliary) const override;
 
   double eta() const override { return eta_; }
+  double n_exterior() const override { return n_exterior_; }
+  std::shared_ptr<const Bsdf> between(double n_interior, double n_exterior) const override {
+    return make_rough_dielectric(roughness_, n_interior / n_exterior, reflectance_, transmittance_,
+                                 n_exterior);
+  }
   double roughness() const override { return facets_.roughness(); }
   RGB albedo(const SurfacePoint& x) const override {
     return glm::max(reflectance_(x), transmittance_(x));
@@ -60,8 +67,9 @@ class RoughDielectric final : public Bsdf {
     return event_probabilities(r, mean(reflectance_(x)), mean(transmittance_(x)));
   }
 
+  RoughnessSettings roughness_;
   TexturedFacets facets_;
-  double eta_;
+  double eta_, n_exterior_;
   Textured<RGB> reflectance_, transmittance_;
   double mean_reflectance_, mean_transmittance_;
   bool constant_;
@@ -137,9 +145,10 @@ std::optional<Vec3> RoughDielectric::invert(const SurfacePoint& x, const Vec3& f
 
 std::shared_ptr<const Bsdf> make_rough_dielectric(const RoughnessSettings& roughness, double eta,
                                                   const Textured<RGB>& specular_reflectance,
-                                                  const Textured<RGB>& specular_transmittance) {
+                                                  const Textured<RGB>& specular_transmittance,
+                                                  double n_exterior) {
   return std::make_shared<RoughDielectric>(roughness, eta, specular_reflectance,
-                                           specular_transmittance);
+                                           specular_transmittance, n_exterior);
 }
 
 }  // namespace fogbow

@@ -64,6 +64,29 @@ TEST(Boundary, OfACanIsClosed) {
   expect_one(group_of({side, lid(2, false)}), Kind::Open, "64 border edges");
 }
 
+/// However can and lids are turned around their common axis.
+TEST(Boundary, OfATurnedCanIsClosed) {
+  Rng rng(testing::suite_seed(), RngDomain::Test, 21, 0);
+  for (int i = 0; i < 20; ++i) {
+    const Vec3 p0 = uniform3(rng), p1 = 3.0 * uniform3(rng), axis = normalize(p1 - p0);
+    const auto lid = [&](const Vec3& center, const Vec3& n) {
+      const Frame frame(n);
+      Mat4 m(0.0);
+      const double phi = 2 * kPi * rng.uniform();
+      m[0] = Vec4(0.7 * (std::cos(phi) * frame.s + std::sin(phi) * frame.t), 0);
+      m[1] = Vec4(0.7 * (std::cos(phi) * frame.t - std::sin(phi) * frame.s), 0);
+      m[2] = Vec4(n, 0);
+      m[3] = Vec4(center, 1);
+      return make_disk(Transform(m));
+    };
+    const BoundaryGroup can =
+        group_of({make_cylinder(p0, p1, 0.7, Transform()), lid(p1, axis), lid(p0, -axis)});
+    EXPECT_TRUE(can.closed());
+    EXPECT_TRUE(can.defects().empty()) << can.defects()[0].message;
+    EXPECT_NEAR(can.volume() / (kPi * sqr(0.7) * length(p1 - p0)), 1, 0.002);
+  }
+}
+
 TEST(Boundary, WithoutALidIsOpen) {
   TriangleMeshData data = box(1);
   data.triangles.pop_back();
