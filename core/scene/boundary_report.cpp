@@ -107,9 +107,11 @@ EnclosedVolume Scene::BoundaryReport::volume_of(const Group& group,
   volume.exterior = group.exterior;
   volume.sets_medium = true;
   volume.priority = group.priority;
-  for (const std::uint32_t i : volume.surfaces)
-    if (refracts(surfaces_[i]))
-      volume.n = surfaces_[i].bsdf->eta() * surfaces_[i].bsdf->n_exterior();
+  for (const std::uint32_t i : volume.surfaces) {
+    if (!refracts(surfaces_[i])) continue;
+    volume.n_exterior = surfaces_[i].bsdf->n_exterior();
+    volume.n = surfaces_[i].bsdf->eta() * volume.n_exterior;
+  }
   if (is_flawed(*group.boundary)) volume.obstacle = "a boundary is flawed, as is said of it";
   return volume;
 }

@@ -23,6 +23,7 @@ struct EnclosedVolume {
   std::shared_ptr<const Medium> interior, exterior;
   bool sets_medium = false;  ///< else light inside is in the medium that is there anyway
   double n = 0;              ///< index of refraction; 0 where the boundary does not refract
+  double n_exterior = 1;     ///< around it, where it refracts
   int priority = 0;
   bool meets_itself = false;  ///< its pieces overlap
   /// Why overlaps with others cannot be resolved; empty where they can.

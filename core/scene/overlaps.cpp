@@ -42,8 +42,8 @@ struct Overlaps::Volume : EnclosedVolume {
   double margin = 0;
   std::vector<const Shape*> shapes;
   std::unique_ptr<Accel> accel;
-  std::vector<bool> lies_in;  ///< other volumes
-  bool overlaps = false;      ///< any
+  std::vector<bool> lies_in, meets;  ///< other volumes
+  bool overlaps = false;             ///< any
   const Medium* around = nullptr;
 
   Volume(EnclosedVolume volume, const std::vector<std::shared_ptr<const Shape>>& whole)
@@ -123,7 +123,11 @@ void Overlaps::rank(const OverlappingPairs& pairs) {
     for (std::size_t b = 0; b < count; ++b)
       volumes_[a].lies_in.push_back(a != b &&
                                     volumes_[a].boundary->lies_within(*volumes_[b].boundary));
-  for (const auto& [a, b] : pairs) volumes_[a].overlaps = volumes_[b].overlaps = true;
+  for (Volume& volume : volumes_) volume.meets.assign(count, false);
+  for (const auto& [a, b] : pairs) {
+    volumes_[a].overlaps = volumes_[b].overlaps = true;
+    volumes_[a].meets[b] = volumes_[b].meets[a] = true;
+  }
   // From the largest to the smallest: of what lies around, all is known.
   std::ranges::stable_sort(order, [&](std::size_t a, std::size_t b) {
     return volumes_[a].boundary->volume() > volumes_[b].boundary->volume();
@@ -206,8 +210,25 @@ std::vector<Overlaps::Place> Overlaps::places(const Part& part, bool interior,
   return all;
 }
 
-const Medium* Overlaps::medium_outside(const Surface& surface, std::size_t own) const {
-  return surface.medium_boundary ? surface.exterior.get() : volumes_[own].around;
+/// What is outside of all volumes. A boundary may declare the medium and the index of a larger
+/// volume outside, and yet come out of it: then what is around that one counts.
+Overlaps::Place Overlaps::outside(const Surface& surface, std::size_t own) const {
+  Place place{surface.medium_boundary ? surface.exterior.get() : volumes_[own].around,
+              surface.bsdf->n_exterior()};
+  for (std::size_t v = 0; v < volumes_.size(); ++v) {
+    const Volume& volume = volumes_[v];
+    if (!(volumes_[own].lies_in[v] || volumes_[own].meets[v]) ||
+        !(volume.boundary->volume() > volumes_[own].boundary->volume()))
+      continue;
+    const bool medium = volume.sets_medium && volume.interior.get() == place.medium;
+    const bool index = volume.n != 0 && volume.n == place.n;
+    if (!medium && !index) continue;
+    if (medium) place.medium = volume.exterior.get();
+    if (index) place.n = volume.n_exterior;
+    own = v;
+    v = static_cast<std::size_t>(-1);  // once more, for what is larger yet
+  }
+  return place;
 }
 
 // --- Surfaces
@@ -222,8 +243,8 @@ void Overlaps::take_part(std::vector<Surface>& surfaces, std::uint32_t surface) 
     throw std::domain_error("more than " + std::to_string(kMostAround) + " volumes are around " +
                             describe(surfaces[surface]));
   std::ranges::sort(part.around, {}, [&](std::size_t v) { return rank_[v]; });
-  part.outside = {medium_outside(surfaces[surface], part.own),
-                  refracting_[surface] ? surfaces[surface].bsdf->n_exterior() : 1};
+  part.outside = outside(surfaces[surface], part.own);
+  if (!refracting_[surface]) part.outside.n = 1;
   add_variants(surfaces, surface, part);
   const bool hides =
       std::ranges::any_of(part.variants, [](const Variant& v) { return v.name == kHidden; });

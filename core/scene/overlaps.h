@@ -63,7 +63,7 @@ class Overlaps final : public HitNames {
   std::shared_ptr<const Bsdf> bsdf_between(const Surface& surface, const Place& interior,
                                            const Place& exterior);
   Place place(const Part& part, Mask inside, bool refracting) const;
-  const Medium* medium_outside(const Surface& surface, std::size_t own) const;
+  Place outside(const Surface& surface, std::size_t own) const;
   std::uint32_t find(std::uint32_t surface, const SurfacePoint& x) const;
 
   std::vector<Volume> volumes_;

@@ -328,6 +328,26 @@ TEST(Overlaps, IceInWaterRefractsBetweenWhatIsThere) {
   EXPECT_EQ(column({1, 3, 0.05}, {0, -1, 0}).size(), 2u);  // beside the ice the surface is there
 }
 
+/// The same where the ice says what is around most of it.
+TEST(Overlaps, VolumesThatComeOutOfWhatTheyDeclareAroundThemAreInWhatIsBeyond) {
+  const auto water = fog(RGB(1), "water"), ice = fog(RGB(0.5), "ice");
+  const auto wet = make_dielectric(1.31 / 1.33, RGB(1), RGB(1), 1.33);
+  const Scene scene(describe_scene({boundary(make_cube(Transform::translate({0, -1, 0}) *
+                                                       Transform::scale({2, 1, 2})),
+                                             water, nullptr, 0, make_dielectric(1.33)),
+                                    boundary(make_sphere(Vec3(0), 0.7), ice, water, 0, wet)}),
+                    true);
+  const auto down = crossings(scene, {{0.1, 3, 0.05}, {0, -1, 0}, 0, kInfinity});
+  ASSERT_EQ(down.size(), 3u);
+  EXPECT_NEAR(down[0].ratio, 1.31, 1e-12);
+  EXPECT_EQ(down[0].behind, ice.get());
+  EXPECT_NEAR(down[1].ratio, 1.33 / 1.31, 1e-12);
+  EXPECT_EQ(down[1].behind, water.get());
+  const auto aside = crossings(scene, {{-5, 0.2, 0.05}, {1, 0, 0}, 0, kInfinity});
+  ASSERT_EQ(aside.size(), 2u);
+  EXPECT_EQ(aside[1].behind, nullptr);
+}
+
 TEST(Overlaps, ThatCannotBeResolvedAreReported) {
   const auto a = fog(RGB(1), "a"), b = fog(RGB(2), "b");
   PrincipledSettings clear;
@@ -344,7 +364,7 @@ TEST(Overlaps, ThatCannotBeResolvedAreReported) {
   EXPECT_NO_THROW(Scene(overlapping(make_dielectric(1.6)), true));
 }
 
-/// Two boxes that overlap, and the same by three that abut: one picture, by every integrator.
+/// Two boxes that overlap, and the same two all but abutting: one picture, by every integrator.
 TEST(Overlaps, GiveThePictureOfTheSceneWithoutThem) {
   const auto a = fog(RGB(1.5, 1, 0.7), "a"), b = fog(RGB(0.5, 1.2, 2.5), "b");
   const auto box = [](double x0, double x1) {
@@ -363,7 +383,7 @@ TEST(Overlaps, GiveThePictureOfTheSceneWithoutThem) {
   const Scene overlapping(
       lit({boundary(box(-1.2, 0.6), a, nullptr), boundary(box(0, 1.2), b, nullptr)}), true);
   const Scene abutting(
-      lit({boundary(box(-1.2, 0), a, nullptr), boundary(box(0, 1.2), b, nullptr)}));
+      lit({boundary(box(-1.2, -1e-6), a, nullptr), boundary(box(0, 1.2), b, nullptr)}));
   const auto run = [](const Scene& scene, const std::string& integrator, double spp) {
     RenderOptions options;
     options.integrator = integrator;
