@@ -65,7 +65,7 @@ Tally take_group(const Scene& scene, const Estimator& bdpt, std::uint64_t sample
     count_ends(scene, w, tally);
     double total = 0;
     for (const Contribution& c : w.contributions) {
-      Path path = assemble(w.light, c.s, w.eye, c.t);
+      Path path = assemble(scene, w.light, c.s, w.eye, c.t);
       if (c.infinite_emitter >= 0) path[0].emitter = c.infinite_emitter;
       const double value = luminance(c.value);
       classify(scene, path, value, tally);

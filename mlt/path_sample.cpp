@@ -68,7 +68,7 @@ std::optional<Rejection> PathSample::assemble(const Subpath& light, int s, const
   y.vertex(s).degenerate = false;
   if (s > 0) {
     y.vertex(s - 1).degenerate = false;
-    y.aim(s - 1);
+    y.aim(*scene_, s - 1);
   }
   for (int i = 0; i < k; ++i)
     if (!y.measure_vertex(*scene_, i)) return Rejection::NoLight;

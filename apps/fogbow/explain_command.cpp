@@ -73,7 +73,10 @@ void find_caustics(const LightCensus& census, std::vector<Finding>& findings) {
 void find_unreachable(const LightCensus& census, const Scene& scene,
                       std::vector<Finding>& findings) {
   if (!(census.dirac_lit_through > 0) || !(census.seen_through > 0)) return;
-  std::string eye = scene.sensor().dirac_position() ? "the pinhole" : "the lens";
+  const Sensor& sensor = scene.sensor();
+  const std::string eye = sensor.parallel()         ? "the parallel rays of the camera"
+                          : sensor.dirac_position() ? "the pinhole"
+                                                    : "the lens";
   findings.push_back(
       {percent(census.dirac_lit_through) +
            " of the light from point or directional lights first meets a specular surface, and " +

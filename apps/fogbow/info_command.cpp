@@ -78,9 +78,11 @@ void print_media(const Scene& scene) {
 
 void print_camera(const Scene& scene) {
   const Sensor& sensor = scene.sensor();
-  print_row("sensor", std::string(sensor.dirac_position() ? "pinhole" : "thin lens") + " at " +
-                          vector_text(Vec3(sensor.to_world()[3])) + ", in " +
-                          medium_name(scene.sensor_medium()) +
+  const char* kind = sensor.parallel()         ? "orthographic"
+                     : sensor.dirac_position() ? "pinhole"
+                                               : "thin lens";
+  print_row("sensor", std::string(kind) + " at " + vector_text(Vec3(sensor.to_world()[3])) +
+                          ", in " + medium_name(scene.sensor_medium()) +
                           (scene.description().sensor_medium_declared ? "" : " (not declared)"));
   const FilmSettings& film = scene.film();
   std::string text = format("%dx%d, %s filter of radius %g", film.width, film.height,

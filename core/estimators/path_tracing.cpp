@@ -91,10 +91,9 @@ double PathTracer::share(const Flight& flight, const Arrival& at, const Vertex& 
 bool PathTracer::leave_sensor(SampleStream& eye, Vec2& raster, Flight& flight) const {
   raster = eye.next2();
   const Sensor& sensor = scene_.sensor();
-  flight.x.kind = VertexKind::Sensor;
-  flight.x.point.position = sensor.sample_position(eye.next2());
-  flight.x.medium = scene_.sensor_medium();
+  flight.x = sample_sensor(scene_, eye.next2());
   const SensorRay ray = sensor.sample_direction(flight.x.position(), raster);
+  flight.x.point.position = ray.origin;
   flight.w = ray.w;
   flight.pdf_sigma = ray.pdf_sigma;
   flight.t_min = sensor.near_distance(ray.w);
@@ -200,10 +199,10 @@ RGB PathTracer::emission(const Flight& before_previous, const Arrival& previous,
                          const Flight& flight, const Arrival& at) const {
   if (!hittable(scene_, at.y)) return RGB(0);
   const RGB value = at.throughput * L_e(scene_, at.y, -flight.w);
-  if (is_black(value) || flight.x.kind == VertexKind::Sensor || flight.x.degenerate) return value;
+  if (is_black(value) || flight.x.on_sensor() || flight.x.degenerate) return value;
   // direct() has the rest: at points of an emitting medium, it would find hardly bounded values.
   if (settings_.null_collisions) return at.y.in_medium() ? value : RGB(0);
-  const double pdf_hit = pdf_arrival(scene_, at.y, at.edge, flight.pdf_sigma);
+  const double pdf_hit = pdf_arrival(scene_, flight.x, at.y, at.edge, flight.pdf_sigma);
   const double pdf_light = pdf_emitter_position(scene_, at.y);
   const double pdf_others = pdf_light * (1 + share(before_previous, previous, at.y));
   return value * (pdf_hit / (pdf_hit + pdf_others));
@@ -224,7 +223,8 @@ std::optional<std::pair<RGB, double>> PathTracer::see(const SubpathVertex& light
       radiance * geometric_term(scene_, light.x, y, *edge) * edge->tau * s.f_hat / light.pdf;
   double pdf_hit = 0;
   if (hittable(scene_, light.x) && s.pdf_to_light > 0)
-    pdf_hit = pdf_arrival(scene_, light.x, reversed(*edge), s.pdf_to_light / s.survival_to_light);
+    pdf_hit =
+        pdf_arrival(scene_, y, light.x, reversed(*edge), s.pdf_to_light / s.survival_to_light);
   return std::pair(value, pdf_hit);
 }
 

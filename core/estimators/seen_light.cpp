@@ -16,9 +16,10 @@ class SeenLight final : public Estimator {
   void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
     w.contributions.clear();
     const Vec2 raster = eye.next2();
-    const Vertex x = sample_sensor(scene_, eye.next2());
+    Vertex x = sample_sensor(scene_, eye.next2());
     const Sensor& sensor = scene_.sensor();
     const SensorRay ray = sensor.sample_direction(x.position(), raster);
+    x.point.position = ray.origin;
     const double importance =
         W_e(scene_, x, ray.w) * D(scene_, x, ray.w) / (ray.pdf_sigma * sensor.pdf_A(x.position()));
     const Way way{raster, importance, eye, w};

@@ -7,11 +7,6 @@
 
 namespace fogbow {
 
-double to_measure(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y,
-                  double pdf) {
-  return x.infinite() ? pdf * D(scene, y, x_to_y.w) : to_measure(y, x_to_y, pdf);
-}
-
 MeasuredPath& MeasuredPath::operator=(const MeasuredPath& x) {
   if (capacity() < x.capacity()) reserve(x.capacity());
   vertices_ = x.vertices_;
@@ -45,16 +40,17 @@ void MeasuredPath::copy(const MeasuredPath& x, int first, int to, int n) {
   std::copy_n(x.transport_.begin() + first, edges, transport_.begin() + to);
 }
 
-void MeasuredPath::aim(int i) {
+void MeasuredPath::aim(const Scene& scene, int i) {
   Edge& e = edges_[i];
   if (vertices_[i].infinite()) {
     e.w = vertices_[i].point.n_g;
     e.length = kInfinity;
     return;
   }
+  look_at(scene, vertices_[i + 1], vertices_[i].position());
   const Vec3 d = vertices_[i + 1].position() - vertices_[i].position();
   e.length = length(d);
-  e.w = d / e.length;
+  e.w = vertices_[i + 1].parallel() ? -vertices_[i + 1].point.n_g : d / e.length;
 }
 
 bool MeasuredPath::measure_vertex(const Scene& scene, int i) {
@@ -67,7 +63,7 @@ bool MeasuredPath::measure_vertex(const Scene& scene, int i) {
   } else if (i == last()) {
     s = {};
     s.f_hat = RGB(W_e(scene, x, to_light(i)));
-    s.pdf_to_light = scene.sensor().pdf_sigma(x.position(), to_light(i));
+    s.pdf_to_light = pdf_importance(scene, x, to_light(i));
   } else {
     s = scatter(scene, x, to_light(i), to_eye(i), x.degenerate, vertices_[i + 1].degenerate);
   }
@@ -111,7 +107,7 @@ double MeasuredPath::pdf_from_light(const Scene& scene, int i) const {
 double MeasuredPath::pdf_from_eye(const Scene& scene, int i) const {
   if (i == last()) return scene.sensor().pdf_A(vertices_[i].position());
   const Edge e = reversed(edges_[i]);
-  return to_measure(vertices_[i], e, scattering_[i + 1].pdf_to_light) *
+  return to_measure(scene, vertices_[i + 1], vertices_[i], e, scattering_[i + 1].pdf_to_light) *
          pdf_distance(scene, e, vertices_[i]);
 }
 

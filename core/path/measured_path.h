@@ -32,7 +32,7 @@ class MeasuredPath {
   const Vertex& operator[](int i) const { return vertices_[i]; }
   const Edge& edge(int i) const { return edges_[i]; }
   /// At the ends: L_e or W_e with the density of the direction along the path (dA across the ray
-  /// for infinite lights).
+  /// where they are parallel).
   const Scattering& scattering(int i) const { return scattering_[i]; }
 
   /// Whether edge(i) leads through a medium in which vertices can lie.
@@ -49,8 +49,9 @@ class MeasuredPath {
   /// n vertices of x from `first`, and the edges between them, with all their factors, to places
   /// from `to`.
   void copy(const MeasuredPath& x, int first, int to, int n);
-  /// Direction and length alone of the straight edge, without a ray.
-  void aim(int i);
+  /// Direction and length alone of the straight edge, without a ray. A parallel sensor's position
+  /// follows its neighbour's.
+  void aim(const Scene& scene, int i);
 
   /// From vertices and directions on both sides: f̂ and densities at x[i]; false where it is black.
   bool measure_vertex(const Scene& scene, int i);
@@ -88,9 +89,5 @@ class MeasuredPath {
   ScaledProduct<RGB> f_;
   Vec2 raster_{0};
 };
-
-/// From density in solid angle at x (across the ray for infinite lights) to density in μ at y.
-double to_measure(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y,
-                  double pdf);
 
 }  // namespace fogbow

@@ -73,14 +73,15 @@ double D(const Scene& scene, const Vertex& x, const Vec3& w) {
     case VertexKind::Sensor: return scene.sensor().D(w);
     case VertexKind::Medium:
     case VertexKind::PointLight:
-    case VertexKind::InfiniteLight: return 1;
+    case VertexKind::InfiniteLight:
+    case VertexKind::ParallelSensor: return 1;
   }
   return 1;
 }
 
 double geometric_term(const Scene& scene, const Vertex& a, const Vertex& b, const Edge& a_to_b) {
   const double d = D(scene, a, a_to_b.w) * D(scene, b, -a_to_b.w);
-  return a.infinite() || b.infinite() ? d : d / sqr(a_to_b.length);
+  return a.parallel() || b.parallel() ? d : d / sqr(a_to_b.length);
 }
 
 Scattering scatter(const Scene& scene, const Vertex& x, const Vec3& w_light, const Vec3& w_eye,
@@ -188,16 +189,26 @@ bool connectible(const Scene& scene, const Vertex& x) {
   return !x.in_medium() || x.medium->scatters();
 }
 
-double to_measure(const Vertex& y, const Edge& x_to_y, double pdf_sigma) {
-  if (y.infinite()) return pdf_sigma;
-  const double density = pdf_sigma / sqr(x_to_y.length);
+double to_measure(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y,
+                  double pdf) {
+  if (x.parallel()) return pdf * D(scene, y, x_to_y.w);
+  if (y.infinite()) return pdf;
+  const double density = pdf / sqr(x_to_y.length);
   return y.on_surface() ? density * std::abs(dot(y.point.n_g, x_to_y.w)) : density;
 }
 
 double pdf_emission(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y) {
   const double pdf = scene.emitter(x.emitter).pdf_direction(emitter_point(x), x_to_y.w);
-  if (!x.infinite()) return to_measure(y, x_to_y, pdf);
-  return pdf * D(scene, y, x_to_y.w);  // parallel light: density across the ray
+  return to_measure(scene, x, y, x_to_y, pdf);
+}
+
+void look_at(const Scene& scene, Vertex& sensor, const Vec3& target) {
+  if (sensor.kind == VertexKind::ParallelSensor)
+    sensor.point.position = scene.sensor().position_seeing(target);
+}
+
+double pdf_importance(const Scene& scene, const Vertex& x, const Vec3& w) {
+  return scene.sensor().pdf_sigma(x.position(), w);
 }
 
 EmitterPoint emitter_point(const Vertex& x) { return {x.point, x.id, 0}; }

@@ -7,11 +7,12 @@ namespace fogbow {
 
 // The factors of f_j, each a function of the path alone [Jakob2013, ch. 3].
 
-/// |N_g·w| on surfaces and lenses, 1 in media, at pinholes, point lights and at infinity.
+/// |N_g·w| on surfaces and lenses, 1 in media, at pinholes, point lights, at infinity and on films
+/// that see parallel rays.
 double D(const Scene& scene, const Vertex& x, const Vec3& w);
 
 /// D_a D_b / ‖a−b‖², with w from a to b; visibility and transmittance are the edge's. At an
-/// infinite end D_b alone, the measure there being solid angle.
+/// infinite or parallel end D_b alone, the measure there being one of directions.
 double geometric_term(const Scene& scene, const Vertex& a, const Vertex& b, const Edge& a_to_b);
 
 /// f̂: BSDF with the correction for shading normals [Veach1997, eq. 5.17], or σ_s f_p; both
@@ -82,12 +83,18 @@ std::optional<Vec3> specular_direction(const Scene& scene, const Vertex& x, cons
 /// Whether a subpath may end at x to be connected there.
 bool connectible(const Scene& scene, const Vertex& x);
 
-/// From density in solid angle at x to density in μ at y (dA, dV; dσ at infinity), the edge leading
-/// from x to y; the distance along the ray is not included.
-double to_measure(const Vertex& y, const Edge& x_to_y, double pdf_sigma);
+/// From density in solid angle at x (across the ray where x is parallel) to density in μ at y (dA,
+/// dV; dσ at infinity), the edge leading from x to y; the distance along the ray is not included.
+double to_measure(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y,
+                  double pdf);
 
 /// Density in μ of y when x₁ emits along the edge (distance along the ray not included).
 double pdf_emission(const Scene& scene, const Vertex& x, const Vertex& y, const Edge& x_to_y);
+
+/// Puts a parallel sensor's vertex where it sees `target` from; others stay.
+void look_at(const Scene& scene, Vertex& sensor, const Vec3& target);
+/// Of a point of the sensor along w away from it: dσ, or dA across the ray where it is parallel.
+double pdf_importance(const Scene& scene, const Vertex& x, const Vec3& w);
 
 /// x₁ as its emitter sees it.
 EmitterPoint emitter_point(const Vertex& x);

@@ -24,7 +24,7 @@ double pdf_from_light(const Scene& scene, const Path& path, int i) {
   if (!edge) return 0;
   if (i == 1)
     return pdf_emission(scene, path[0], path[1], *edge) * pdf_distance(scene, *edge, path[1]);
-  return pdf_arrival(scene, path[i], *edge, scatter_at(scene, path, i - 1).pdf_to_eye);
+  return pdf_arrival(scene, path[i - 1], path[i], *edge, scatter_at(scene, path, i - 1).pdf_to_eye);
 }
 
 /// The same from the eye, given path(i..k).
@@ -36,14 +36,14 @@ double pdf_from_eye(const Scene& scene, const Path& path, int i) {
   if (!edge) return 0;
   const double pdf_sigma = i + 1 == last ? sensor.pdf_sigma(path[last].position(), -edge->w)
                                          : scatter_at(scene, path, i + 1).pdf_to_light;
-  return pdf_arrival(scene, path[i], reversed(*edge), pdf_sigma);
+  return pdf_arrival(scene, path[i + 1], path[i], reversed(*edge), pdf_sigma);
 }
 
 }  // namespace
 
 Vec3 direction(const Path& path, int i, int j) {
-  if (path[i].infinite()) return path[i].point.n_g;
-  if (path[j].infinite()) return -path[j].point.n_g;
+  if (path[i].parallel()) return path[i].point.n_g;
+  if (path[j].parallel()) return -path[j].point.n_g;
   return normalize(path[j].position() - path[i].position());
 }
 
@@ -58,13 +58,14 @@ PathConfiguration configuration(const Path& path) {
   return c;
 }
 
-Path assemble(const Subpath& light, int s, const Subpath& eye, int t) {
+Path assemble(const Scene& scene, const Subpath& light, int s, const Subpath& eye, int t) {
   Path path;
   for (int i = 0; i < s; ++i) path.push_back(light[i].x);
   for (int i = t; i-- > 0;) path.push_back(eye[i].x);
   // The two ends that are joined scatter smoothly, whatever their walks went on with.
   if (s > 0) path[s - 1].degenerate = false;
   path[s].degenerate = false;
+  if (s > 0 && !path[s - 1].infinite()) look_at(scene, path[s], path[s - 1].position());
   return path;
 }
 
@@ -84,7 +85,8 @@ double technique_density(const Scene& scene, const Path& path, int s) {
   const int k = static_cast<int>(path.size());
   if (s < 0 || s >= k) return 0;
   if (s == 0 && !hittable(scene, path[0])) return 0;
-  if (s > 0 && (path[s - 1].degenerate || path[s].degenerate)) return 0;
+  if (s > 0 && (path[s - 1].degenerate || path[s].degenerate || !has_ray(path[s - 1], path[s])))
+    return 0;
   double p = 1;
   for (int i = 0; i < s; ++i) p *= pdf_from_light(scene, path, i);
   for (int i = s; i < k; ++i) p *= pdf_from_eye(scene, path, i);

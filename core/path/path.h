@@ -25,7 +25,7 @@ struct PathConfiguration {
 PathConfiguration configuration(const Path& path);
 
 /// The path of technique (s, t) over two subpaths.
-Path assemble(const Subpath& light, int s, const Subpath& eye, int t);
+Path assemble(const Scene& scene, const Subpath& light, int s, const Subpath& eye, int t);
 
 // The definitions, evaluated without any cache: the oracle of whatever is faster.
 

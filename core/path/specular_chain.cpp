@@ -44,8 +44,8 @@ void scatter_specularly(RayDerivative& d, const Vec3& w, const Vec3& w_out, Vec3
 RayBundle::RayBundle(const Vertex& start, const Vec3& w) : w_(w), across_(w) {
   // A bundle from a point spreads in direction, a parallel one in position.
   const Vec3 zero(0);
-  d_[0] = start.infinite() ? Derivative{across_.s, zero} : Derivative{zero, across_.s};
-  d_[1] = start.infinite() ? Derivative{across_.t, zero} : Derivative{zero, across_.t};
+  d_[0] = start.parallel() ? Derivative{across_.s, zero} : Derivative{zero, across_.s};
+  d_[1] = start.parallel() ? Derivative{across_.t, zero} : Derivative{zero, across_.t};
 }
 
 void RayBundle::scatter(const Scene& scene, const Vertex& x, double t, const Vec3& w_out) {
@@ -66,6 +66,8 @@ std::array<Vec3, 2> RayBundle::spread(double t) const {
   return {d_[0].d_position + t * d_[0].d_direction, d_[1].d_position + t * d_[1].d_direction};
 }
 
+std::array<Vec3, 2> RayBundle::turn() const { return {d_[0].d_direction, d_[1].d_direction}; }
+
 namespace {
 
 /// |N_g·ω_eye| |dσ(ω_eye)/do|: a glossy vertex' place in the reduced f, its facet being given.
@@ -85,7 +87,7 @@ double chain_jacobian(const Scene& scene, const Path& path, int a, int b) {
   int i = a;
   for (; i + step != b; i += step)
     bundle.scatter(scene, path[i + step], distance(i), direction(path, i + step, i + 2 * step));
-  const auto spread = bundle.spread(distance(i));
+  const auto spread = path[b].parallel() ? bundle.turn() : bundle.spread(distance(i));
   return 1 / std::abs(dot(direction(path, i, b), cross(spread[0], spread[1])));
 }
 

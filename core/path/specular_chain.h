@@ -21,6 +21,8 @@ class RayBundle {
   void scatter(const Scene& scene, const Vertex& x, double t, const Vec3& w_out);
   /// Of the position at distance t from the last vertex.
   std::array<Vec3, 2> spread(double t) const;
+  /// Of the direction.
+  std::array<Vec3, 2> turn() const;
   /// The frame whose s and t the coordinates at the start are.
   const Frame& across() const { return across_; }
 
@@ -31,8 +33,8 @@ class RayBundle {
 };
 
 /// |dσ_a/dA⊥_b| from path[a] through the degenerate vertices between to path[b], glossy ones
-/// keeping their facet; from infinity |dA⊥_a/dA⊥_b|. `a` may be greater than `b`: then seen from
-/// the eye's side.
+/// keeping their facet; from a parallel end |dA⊥_a/dA⊥_b|, to one |dσ_a/dσ_b|. `a` may be greater
+/// than `b`: then seen from the eye's side.
 double chain_jacobian(const Scene& scene, const Path& path, int a, int b);
 
 /// What turns the factors of f between a and b > a, formal deltas included, into those of the

@@ -24,8 +24,7 @@ bool arrive(const Scene& scene, const SubpathVertex& x, const RGB& f, const Step
   const double distance = pdf_distance(scene, step.edge, step.next);
   next.throughput =
       x.throughput * f * (D(scene, x.x, step.edge.w) / step.pdf_sigma) * (step.edge.tau / distance);
-  next.pdf = distance * (x.x.infinite() ? step.pdf_sigma * D(scene, step.next, step.edge.w)
-                                        : to_measure(step.next, step.edge, step.pdf_sigma));
+  next.pdf = distance * to_measure(scene, x.x, step.next, step.edge, step.pdf_sigma);
   next.connects = connectible(scene, next.x);
   return is_finite(next.throughput) && !is_black(next.throughput);
 }
@@ -60,8 +59,8 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
     if (!arrive(scene, x, s.f_hat, step, next)) return;
 
     x.x.degenerate = sample->degenerate;
-    const double reverse =
-        pdf_arrival(scene, path[before].x, reversed(x.edge), eye ? s.pdf_to_eye : s.pdf_to_light);
+    const double reverse = pdf_arrival(scene, x.x, path[before].x, reversed(x.edge),
+                                       eye ? s.pdf_to_eye : s.pdf_to_light);
     path[before].other_techniques =
         other_techniques(scene, path, before, reverse, sample->degenerate, side);
     if (!eye && s.survival_to_light > 0) path[before].if_behind_specular = 1 / s.survival_to_light;
@@ -87,10 +86,11 @@ bool leave_emitter(const Scene& scene, const Vertex& x, const Vec2& u_direction,
   return true;
 }
 
-bool leave_sensor(const Scene& scene, const Vertex& x, const Vec2& raster, const Vec2& u_distance,
+bool leave_sensor(const Scene& scene, Vertex& x, const Vec2& raster, const Vec2& u_distance,
                   Step& step) {
   const Sensor& sensor = scene.sensor();
   const SensorRay ray = sensor.sample_direction(x.position(), raster);
+  x.point.position = ray.origin;
   step.pdf_sigma = ray.pdf_sigma;
   return go(scene, x, ray.w, u_distance, Side::Eye, step, sensor.near_distance(ray.w),
             sensor.far_distance(ray.w));
@@ -113,8 +113,10 @@ std::optional<DirectionSample> leave_vertex(const Scene& scene, const Vertex& x,
 
 Vertex sample_sensor(const Scene& scene, const Vec2& u) {
   Vertex x;
-  x.kind = VertexKind::Sensor;
-  x.point.position = scene.sensor().sample_position(u);
+  const Sensor& sensor = scene.sensor();
+  x.kind = sensor.parallel() ? VertexKind::ParallelSensor : VertexKind::Sensor;
+  x.point.position = sensor.sample_position(u);
+  if (sensor.parallel()) x.point.n_g = sensor.sample_direction(x.position(), Vec2(0.5)).w;
   x.medium = scene.sensor_medium();
   return x;
 }
@@ -155,7 +157,8 @@ double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, 
                         bool next_degenerate, Side side) {
   const double ratio = pdf_reverse / path[i].pdf;
   if (i == 0) return side == Side::Light && hittable(scene, path[0].x) ? ratio : 0;
-  const bool connects = !path[i - 1].x.degenerate && !path[i].x.degenerate;
+  const bool connects =
+      !path[i - 1].x.degenerate && !path[i].x.degenerate && has_ray(path[i - 1].x, path[i].x);
   const double factor = next_degenerate ? path[i - 1].if_behind_specular : 1.0;
   return ratio * (connects + factor * path[i - 1].other_techniques);
 }
@@ -187,10 +190,12 @@ void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Su
   start.throughput = RGB(1 / start.pdf);
   start.connects = true;
   path.push_back(start);
+  if (max_vertices < 2) return;
   Step step;
-  if (max_vertices < 2 || !leave_sensor(scene, start.x, raster, u_distance, step)) return;
+  const bool seen = leave_sensor(scene, start.x, raster, u_distance, step);
+  path.front().x = start.x;
   SubpathVertex next;
-  if (!arrive(scene, start, RGB(W_e(scene, start.x, step.edge.w)), step, next)) return;
+  if (!seen || !arrive(scene, start, RGB(W_e(scene, start.x, step.edge.w)), step, next)) return;
   path.push_back(next);
   if (!next.x.infinite()) walk(scene, u, max_vertices, path, Side::Eye);
 }

@@ -50,14 +50,14 @@ bool make_infinite_vertex(const Scene& scene, const Edge& edge, Vertex& x);
 struct Step {
   Vertex next;
   Edge edge;             ///< leads to `next`
-  double pdf_sigma = 0;  ///< of its direction (across the ray for infinite lights)
+  double pdf_sigma = 0;  ///< of its direction (across the ray from parallel ends)
 };
 
 /// Light leaves x₁. False where it gets nowhere.
 bool leave_emitter(const Scene& scene, const Vertex& x, const Vec2& u_direction,
                    const Vec2& u_distance, Step& step);
-/// The eye looks from x_k; ends also at infinite emitters.
-bool leave_sensor(const Scene& scene, const Vertex& x, const Vec2& raster, const Vec2& u_distance,
+/// The eye looks from x_k, which is put to where the ray starts; ends also at infinite emitters.
+bool leave_sensor(const Scene& scene, Vertex& x, const Vec2& raster, const Vec2& u_distance,
                   Step& step);
 /// A subpath goes on from x; `from` is the direction it came from. Says how it was scattered.
 std::optional<DirectionSample> leave_vertex(const Scene& scene, const Vertex& x, const Vec3& from,
@@ -75,9 +75,10 @@ void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, 
 void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path,
                        Vec2& raster);
 
-/// Density of sampling x as the end of an edge that leaves its predecessor with density pdf_sigma.
-inline double pdf_arrival(const Scene& scene, const Vertex& x, const Edge& to_x, double pdf_sigma) {
-  return to_measure(x, to_x, pdf_sigma) * pdf_distance(scene, to_x, x);
+/// Density of sampling x as the end of an edge that leaves `from` with density pdf_sigma.
+inline double pdf_arrival(const Scene& scene, const Vertex& from, const Vertex& x, const Edge& to_x,
+                          double pdf_sigma) {
+  return to_measure(scene, from, x, to_x, pdf_sigma) * pdf_distance(scene, to_x, x);
 }
 
 /// The same edge seen from its other end.
@@ -99,11 +100,16 @@ inline bool hittable(const Scene& scene, const Vertex& x) {
   return passage(scene, x, x.point.n_g) != RGB(1);
 }
 
-/// A light with a Dirac position or direction is a point of a pinhole's picture; by convention it
-/// is not seen directly.
+/// A light with a Dirac position or direction is a point of the picture of a pinhole, or of
+/// parallel rays; by convention it is not seen directly.
 inline bool is_unseen(const Scene& scene, const Vertex& x) {
-  return scene.sensor().dirac_position() && is_dirac(scene.emitter(x.emitter).kind());
+  return (scene.sensor().dirac_position() || scene.sensor().parallel()) &&
+         is_dirac(scene.emitter(x.emitter).kind());
 }
+
+/// Whether a ray joins what was sampled at both ends, of the two of an edge: directions at both
+/// have none in common.
+inline bool has_ray(const Vertex& x, const Vertex& y) { return !(x.parallel() && y.parallel()); }
 
 /// Whether light from x₁ that reaches the eye directly or by degenerate vertices alone is "seen
 /// light": a function of the film's position, up to the choice of events.

@@ -9,6 +9,7 @@ bool joinable(const Scene& scene, const MeasuredPath& path, int split) {
   if (split >= path.size()) return false;  // nothing runs into the sensor
   if (split == 0) return hittable(scene, path[0]);
   if (path[split - 1].degenerate || path[split].degenerate) return false;
+  if (!has_ray(path[split - 1], path[split])) return false;
   return path.size() > 2 || !is_unseen(scene, path[0]);
 }
 

@@ -369,10 +369,11 @@ std::optional<Edge> connect(const Scene& scene, const Vertex& a, const Vertex& b
     const Vec3 d = b.position() - a.position();
     edge.length = length(d);
     if (!(edge.length > 0)) return std::nullopt;
-    edge.w = ray.d = d / edge.length;
+    edge.w = ray.d = b.parallel() ? -b.point.n_g : d / edge.length;
+    if (!(dot(d, edge.w) > 0)) return std::nullopt;  // behind the film
     ray.t_max = edge.length;
   }
-  if (b.kind == VertexKind::Sensor) {
+  if (b.on_sensor()) {
     const double near = scene.sensor().near_distance(-edge.w);
     const double far = scene.sensor().far_distance(-edge.w);
     if (a.infinite()) {

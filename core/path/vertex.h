@@ -12,6 +12,8 @@ enum class VertexKind : std::uint8_t {
   InfiniteLight,  ///< a direction, measure dσ, or counting where it is Dirac; `point.n_g` is where
                   ///< its light travels
   Sensor,         ///< on the aperture (dA), or a pinhole (counting measure)
+  ParallelSensor,  ///< the direction `point.n_g` in which an orthographic camera looks, counting
+                   ///< measure; where on the film x_{k−1} is seen from is its position
 };
 
 /// One x_i, wherever it came from. The whole state of a path lies in its vertices.
@@ -27,6 +29,11 @@ struct Vertex {
   bool on_surface() const { return kind == VertexKind::Surface; }
   bool in_medium() const { return kind == VertexKind::Medium; }
   bool infinite() const { return kind == VertexKind::InfiniteLight; }
+  bool on_sensor() const {
+    return kind == VertexKind::Sensor || kind == VertexKind::ParallelSensor;
+  }
+  /// Whether it is a direction, so that rays from it spread by their positions across it.
+  bool parallel() const { return infinite() || kind == VertexKind::ParallelSensor; }
 };
 
 /// The segment between two consecutive vertices, with what attenuates it.

@@ -2,7 +2,7 @@
 #pragma once
 #include <optional>
 
-#include "core/scene/sensors.h"
+#include "core/scene/film_area.h"
 
 namespace fogbow {
 
@@ -23,13 +23,13 @@ class PerspectiveProjection {
   const Mat4& matrix() const { return matrix_; }
 
   /// Of a raster position on the crop window.
-  Vec2 tangent(const Vec2& raster) const { return tangent_lo_ + raster * tangent_size_; }
+  Vec2 tangent(const Vec2& raster) const { return film_.point(raster); }
   /// Nothing off the film.
-  std::optional<Vec2> raster(const Vec2& tangent) const;
+  std::optional<Vec2> raster(const Vec2& tangent) const { return film_.raster(tangent); }
   /// Density in solid angle, around any point, of the direction to a point of a plane across the
   /// axis that is uniform on the film's image there.
   double pdf_sigma(double cos_axis) const {
-    return inverse_area_ / (cos_axis * cos_axis * cos_axis);
+    return 1 / (film_.area() * cos_axis * cos_axis * cos_axis);
   }
 
   double near_distance(double cos_axis) const { return near_ / cos_axis; }
@@ -39,9 +39,7 @@ class PerspectiveProjection {
   Mat4 matrix_;
   Vec3 origin_, x_, y_, z_;
   double scale_;
-  Vec2 tangent_lo_,
-      tangent_size_;  ///< of raster (0, 0), and from there to (1, 1): negative, +x is to the left
-  double inverse_area_;  ///< of the film in tangents
+  FilmArea film_;  ///< in tangents
   double near_, far_;
 };
 

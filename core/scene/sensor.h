@@ -8,7 +8,8 @@ namespace fogbow {
 
 struct SensorRay {
   Vec3 w;            ///< world, away from the sensor
-  double pdf_sigma;  ///< of the direction, given the position
+  double pdf_sigma;  ///< of the direction, given the position; parallel: dA across the ray
+  Vec3 origin;       ///< the position; parallel: where on the film the ray starts
 };
 
 /// A camera. Raster positions are in [0,1)², u to the right, v down. The importance W_e integrates
@@ -20,9 +21,15 @@ class Sensor {
 
   /// True for pinholes: position Dirac, D = 1, pdf_A = 1.
   virtual bool dirac_position() const = 0;
+  /// True for orthographic cameras, the mirror image of directional lights: one direction in which
+  /// they look, D = 1, pdf_A = 1. Then come positions on the film, with density across the rays.
+  virtual bool parallel() const { return false; }
+  /// Parallel: where on the film (or beside it, in its plane) `x` would be seen from.
+  virtual Vec3 position_seeing(const Vec3& /*x*/) const { return sample_position(Vec2(0.5)); }
   virtual Vec3 sample_position(const Vec2& u) const = 0;
   virtual double pdf_A(const Vec3& position) const = 0;
-  /// The u with sample_position(u) = position; `auxiliary` for pinholes, where any u will do.
+  /// The u with sample_position(u) = position; `auxiliary` for pinholes and parallel rays, where
+  /// any u will do.
   virtual Vec2 invert_position(const Vec3& position, const Vec2& auxiliary) const = 0;
 
   /// D at the sensor for a direction away from it: 1 for pinholes, |cos| to the optical axis for

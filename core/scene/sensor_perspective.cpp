@@ -17,7 +17,7 @@ class PerspectiveSensor final : public Sensor {
   double D(const Vec3&) const override { return 1; }
   SensorRay sample_direction(const Vec3&, const Vec2& raster) const override {
     const Vec3 w = normalize(Vec3(projection_.tangent(raster), 1));
-    return {projection_.to_world(w), projection_.pdf_sigma(w.z)};
+    return {projection_.to_world(w), projection_.pdf_sigma(w.z), projection_.origin()};
   }
   double pdf_sigma(const Vec3& position, const Vec3& w) const override {
     return raster(position, w) ? projection_.pdf_sigma(projection_.cos_axis(w)) : 0.0;

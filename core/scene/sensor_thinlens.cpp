@@ -39,7 +39,7 @@ class ThinLensSensor final : public Sensor {
   SensorRay sample_direction(const Vec3& position, const Vec2& raster) const override {
     const Vec2 tangent = projection_.tangent(raster) - on_lens(position) / focus_;
     const Vec3 w = normalize(Vec3(tangent, 1));
-    return {projection_.to_world(w), projection_.pdf_sigma(w.z)};
+    return {projection_.to_world(w), projection_.pdf_sigma(w.z), position};
   }
   double pdf_sigma(const Vec3& position, const Vec3& w) const override {
     return raster(position, w) ? projection_.pdf_sigma(projection_.cos_axis(w)) : 0.0;

@@ -18,6 +18,10 @@ struct PerspectiveSettings {
 };
 
 std::shared_ptr<const Sensor> make_perspective_sensor(const PerspectiveSettings& settings);
+/// Parallel rays along +z of `to_world`, from a film that spans [−1, 1] along its x; the field of
+/// view counts for nothing. Clips as Mitsuba 3.9.1 does: `near_clip` in lengths of its z axis from
+/// the film, and from there on far_clip − near_clip in lengths of the world.
+std::shared_ptr<const Sensor> make_orthographic_sensor(const PerspectiveSettings& settings);
 std::shared_ptr<const Sensor> make_thinlens_sensor(const PerspectiveSettings& settings,
                                                    double aperture_radius, double focus_distance);
 

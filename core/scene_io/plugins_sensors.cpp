@@ -42,7 +42,8 @@ double fov(Properties& p, double aspect) {
   return horizontal_fov(p, angle, p.string("fov_axis", "x"), aspect);
 }
 
-PerspectiveSettings perspective_settings(Properties& p, const FilmSettings& film) {
+/// All but the field of view.
+PerspectiveSettings film_and_clips(Properties& p, const FilmSettings& film) {
   PerspectiveSettings s;
   s.to_world = p.transform("to_world");
   s.width = film.width;
@@ -51,11 +52,16 @@ PerspectiveSettings perspective_settings(Properties& p, const FilmSettings& film
   s.crop_y = film.crop_y;
   s.crop_width = film.crop_width;
   s.crop_height = film.crop_height;
-  s.fov_x_degrees = fov(p, static_cast<double>(film.width) / film.height);
   s.near_clip = p.positive_number("near_clip", s.near_clip);
   s.far_clip = p.positive_number("far_clip", s.far_clip);
   if (!(s.near_clip < s.far_clip))
     p.fail("near_clip", "\"near_clip\" must be smaller than \"far_clip\"");
+  return s;
+}
+
+PerspectiveSettings perspective_settings(Properties& p, const FilmSettings& film) {
+  PerspectiveSettings s = film_and_clips(p, film);
+  s.fov_x_degrees = fov(p, static_cast<double>(film.width) / film.height);
   return s;
 }
 
@@ -76,12 +82,16 @@ std::shared_ptr<const Sensor> thinlens(Properties& p, const FilmSettings& film) 
   return make_perspective_sensor(s);
 }
 
+std::shared_ptr<const Sensor> orthographic(Properties& p, const FilmSettings& film) {
+  return make_orthographic_sensor(film_and_clips(p, film));
+}
+
 }  // namespace
 
 const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)>&
 sensor_plugins() {
   static const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)> table{
-      {"perspective", perspective}, {"thinlens", thinlens}};
+      {"perspective", perspective}, {"thinlens", thinlens}, {"orthographic", orthographic}};
   return table;
 }
 

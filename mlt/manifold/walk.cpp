@@ -68,7 +68,7 @@ std::optional<Segment> held_chain_from(const Scene& scene, const MeasuredPath& x
 }
 
 bool walk(const Scene& scene, MeasuredPath& y, const Segment& s) {
-  if (y[s.anchor].infinite()) return false;
+  if (y[s.anchor].parallel()) return false;
   const Vec3 target = y[s.end].position();
   const double near = kConverged * scene.radius();
   thread_local MeasuredPath trial;

@@ -113,7 +113,7 @@ class Bidirectional final : public Mutation<PathSample> {
       y.vertex(end).degenerate = false;
     }
     if (!joinable(scene, y, joint)) return Rejection::WrongConfiguration;
-    if (joint > 0) y.aim(joint - 1);
+    if (joint > 0) y.aim(scene, joint - 1);
     // Roulette at a vertex looks at the next on the eye's side: one more on the light's.
     const int first = std::max(s - 2, 0), last = std::min(y.size() - t, y.last());
     return complete(sample, first, last, joint - 1);
@@ -137,7 +137,7 @@ class Bidirectional final : public Mutation<PathSample> {
     Step step;
     if (from == 0 || from == y.last()) {
       const Vec2 u_direction = u.next2(), u_distance = u.next2();
-      if (!(eye ? leave_sensor(scene, y[from], u_direction, u_distance, step)
+      if (!(eye ? leave_sensor(scene, y.vertex(from), u_direction, u_distance, step)
                 : leave_emitter(scene, y[from], u_direction, u_distance, step)))
         return false;
     } else {

@@ -18,8 +18,9 @@ std::optional<Vec3> step_on_film(const PathSample& x, Rng& rng) {
   const StepSizes pixels(1, std::max(0.1 * size, 2.0));
   const Vec2 raster = x.raster() + planar_step(pixels, rng) / Vec2(width, height);
   if (!(raster.x >= 0 && raster.x < 1 && raster.y >= 0 && raster.y < 1)) return std::nullopt;
-  const MeasuredPath& path = x.path();
-  return x.scene().sensor().sample_direction(path[path.last()].position(), raster).w;
+  const Vertex& eye = x.path()[x.path().last()];
+  const SensorRay ray = x.scene().sensor().sample_direction(eye.position(), raster);
+  return eye.parallel() ? ray.origin - eye.position() : ray.w;
 }
 
 }  // namespace

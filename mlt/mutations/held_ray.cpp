@@ -26,7 +26,7 @@ bool HeldRay::trace(const Scene& scene, const MeasuredPath& x, const HeldVertex&
     const Vec3 at = x[held.vertex].position(), center = scene.bounds().center();
     start = beyond_scene(scene, start, at + dot(center - at, edge.w) * edge.w);
     t_ = length(at - start.position());
-  } else if (start.kind == VertexKind::Sensor) {
+  } else if (start.on_sensor()) {
     near = scene.sensor().near_distance(edge.w);
     far = scene.sensor().far_distance(edge.w);
   }

@@ -25,7 +25,7 @@ void for_each_move(const Scene& scene, const MeasuredPath& x, Visit&& visit) {
       const auto traced = segment_from(x, i, toward);
       if (!traced) continue;
       const auto beyond = held_chain_from(scene, x, traced->end, toward);
-      if (!beyond || beyond->length() < 2 || x[beyond->end].infinite()) continue;
+      if (!beyond || beyond->length() < 2 || x[beyond->end].parallel()) continue;
       const Side back = toward == Side::Light ? Side::Eye : Side::Light;
       visit(Move{*traced, {beyond->end, traced->end, back}});
     }

@@ -19,7 +19,7 @@ bool transmits(const MeasuredPath& x, int i) {
 std::optional<Rejection> follow(const Scene& scene, const Vertex& start, const Vec3& w,
                                 Vertex& next, Edge& edge) {
   double near = 0, far = kInfinity;
-  if (start.kind == VertexKind::Sensor) {
+  if (start.on_sensor()) {
     near = scene.sensor().near_distance(w);
     far = scene.sensor().far_distance(w);
   }
@@ -57,7 +57,7 @@ Vec3 arrival(const MeasuredPath& y, const Segment& s, int i) {
   return s.toward == Side::Eye ? y.edge(i - 1).w : -y.edge(i).w;
 }
 
-/// The vertex after i on the segment, along w (an offset where i is infinite light).
+/// The vertex after i on the segment, along w (an offset where i is parallel).
 std::optional<Rejection> trace_vertex(const Scene& scene, MeasuredPath& y, const Segment& s, int i,
                                       const Vec3& w) {
   const int next = i + s.step(), link = std::min(i, next);
@@ -67,6 +67,9 @@ std::optional<Rejection> trace_vertex(const Scene& scene, MeasuredPath& y, const
     edge.length = kBeyond * scene.radius();
     if (const auto why = follow(scene, start, y[i].point.n_g, y.vertex(next), edge)) return why;
     edge.length = kInfinity;
+  } else if (y[i].parallel()) {
+    y.vertex(i).point.position += w;
+    if (const auto why = follow(scene, y[i], y[i].point.n_g, y.vertex(next), edge)) return why;
   } else if (const auto why = follow(scene, y[i], w, y.vertex(next), edge)) {
     return why;
   }
@@ -153,7 +156,7 @@ double segment_density(const Scene& scene, const MeasuredPath& x, const Segment&
 std::optional<Rejection> complete(PathSample& sample, int first, int last, int joint) {
   const Scene& scene = sample.scene();
   MeasuredPath& y = sample.path();
-  if (joint >= 0) y.aim(joint);
+  if (joint >= 0) y.aim(scene, joint);
   for (int i = first; i <= last; ++i)
     if (!y.measure_vertex(scene, i)) return Rejection::NoLight;
   if (joint >= 0 && !y.connect(scene, joint)) return Rejection::Occluded;

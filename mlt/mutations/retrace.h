@@ -34,8 +34,8 @@ bool movable(const Scene& scene, const MeasuredPath& x, const Segment& segment);
 Vec3 departure(const MeasuredPath& x, const Segment& segment);
 
 /// Traces y's vertices of the segment from y's anchor along w: the kinds and events of those that y
-/// holds there, which they replace; medium vertices keep their distance. From infinite lights w is
-/// an offset across the light.
+/// holds there, which they replace; medium vertices keep their distance. From parallel ends w is an
+/// offset across the rays.
 std::optional<Rejection> retrace(const Scene& scene, MeasuredPath& y, const Segment& segment,
                                  const Vec3& w);
 
@@ -45,7 +45,7 @@ std::optional<Rejection> retrace_chain(const Scene& scene, MeasuredPath& y, cons
                                        Vec3& w, std::span<const Vec3> facets = {});
 
 /// Density in μ of the segment's vertices when its direction at the anchor has density one in solid
-/// angle (across the light for infinite ones) and distances and events are kept.
+/// angle (across the rays of parallel ends) and distances and events are kept.
 double segment_density(const Scene& scene, const MeasuredPath& x, const Segment& segment);
 
 /// Where light of an infinite emitter's vertex starts that is to reach `target`.

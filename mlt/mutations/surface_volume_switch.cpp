@@ -38,7 +38,7 @@ void for_each_flip(const MeasuredPath& x, Visit&& visit) {
   for_each_held_vertex(x, true, [&](const HeldVertex& h) {
     if (!x[h.beyond()].degenerate) return visit(h, 1.0);
     const auto there = segment_from(x, h.vertex, h.held == Side::Light ? Side::Eye : Side::Light);
-    if (there && !x[there->end].infinite()) visit(h, kWalkWeight);
+    if (there && !x[there->end].parallel()) visit(h, kWalkWeight);
   });
 }
 
@@ -55,7 +55,7 @@ class Departure {
       const LocalSteps steps(profile, c);
       if (!steps.empty()) channels_[channel_count_++] = c;
     }
-    if (far.infinite()) return;
+    if (far.parallel()) return;
     const Vec3 d = far.position() - profile.point(0);
     const double foot = dot(d, profile.edge().w), distance = length(d - foot * profile.edge().w);
     if (distance > 1e-9 * profile.length()) towards_ = {foot, distance, 0, profile.length()};

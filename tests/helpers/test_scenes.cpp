@@ -38,6 +38,15 @@ class Builder {
                              : make_perspective_sensor(s);
     return *this;
   }
+  /// Sees `width` across.
+  Builder& parallel_camera(const Vec3& origin, const Vec3& target, double width) {
+    PerspectiveSettings s;
+    s.to_world = Transform::look_at(origin, target, Vec3(0, 1, 0)) *
+                 Transform::scale(Vec3(width / 2, width / 2, 1));
+    s.width = s.height = kSize;
+    d_.sensor = make_orthographic_sensor(s);
+    return *this;
+  }
   Builder& camera_medium(MediumPtr m) {
     d_.sensor_medium = std::move(m);
     d_.sensor_medium_declared = true;
@@ -335,6 +344,23 @@ SceneDescription coatings() {
   return b.done();
 }
 
+/// Parallel rays of the eye onto and through fog and glass, and of light.
+SceneDescription parallel_rays() {
+  Builder b;
+  const auto haze = fog(RGB(0.6), RGB(0.9), 0.2);
+  b.parallel_camera(Vec3(0.4, 1.2, 2.2), Vec3(0, -0.3, 0), 3.6);
+  b.floor(gray()).ceiling_light(0.4, RGB(8, 7, 6));
+  b.bounds(make_cube(Transform::translate(Vec3(0.3, -0.3, 0.2)) * Transform::scale(Vec3(0.65))),
+           make_null(), haze, nullptr);
+  b.bounds(sphere(Vec3(0.3, -0.3, 0.2), 0.45), make_dielectric(1.5), nullptr, haze);
+  b.add(sphere(Vec3(-0.9, -0.5, 0), 0.4),
+        make_rough_conductor({MicrofacetKind::Ggx, 0.4, 0.4}, RGB(0.2, 0.9, 1.1),
+                             RGB(3.9, 2.4, 2.2)));
+  b.emitter(make_environment_emitter(sky(), Transform::rotate(Vec3(0, 1, 0), 40)));
+  b.emitter(make_directional_emitter(Vec3(0.4, -1, -0.3), RGB(1.2, 1.1, 0.9)));
+  return b.done();
+}
+
 }  // namespace
 
 const std::vector<TestScene>& test_scenes() {
@@ -352,7 +378,8 @@ const std::vector<TestScene>& test_scenes() {
                                                 {"sky-lens", sky_lens},
                                                 {"two-kinds-of-glass", two_kinds_of_glass},
                                                 {"sun-and-can", sun_and_can},
-                                                {"coatings", coatings}};
+                                                {"coatings", coatings},
+                                                {"parallel-rays", parallel_rays}};
   return scenes;
 }
 

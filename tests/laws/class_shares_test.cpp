@@ -39,7 +39,7 @@ Shares by_bdpt(const Scene& scene) {
       x.draw(*bdpt, rng);
       for (const Contribution& c : x.contributions()) {
         std::string text;
-        for (const Vertex& v : assemble(x.workspace().light, c.s, x.workspace().eye, c.t))
+        for (const Vertex& v : assemble(scene, x.workspace().light, c.s, x.workspace().eye, c.t))
           text += v.in_medium() ? 'M' : 'S';
         add(parts[r], text, static_cast<int>(r), luminance(c.value) / kSamples);
       }

@@ -77,7 +77,7 @@ std::string describe(const MeasuredPath& path) {
   for (const Vertex& x : path.vertices())
     kinds += x.degenerate                       ? 's'
              : x.in_medium()                    ? 'V'
-             : x.kind == VertexKind::Sensor     ? 'E'
+             : x.on_sensor()                    ? 'E'
              : x.kind == VertexKind::PointLight ? 'P'
              : x.infinite()                     ? 'I'
                                                 : 'D';
@@ -361,14 +361,15 @@ TEST_P(BidirectionalLaws, WeighAllSplits) {
     const int k = x.path().size(), m = y.path().size();
     int s = 0, t = 0;
     const auto same_place = [](const Vertex& v, const Vertex& w) {
-      if (v.infinite() || w.infinite()) return v.kind == w.kind && v.point.n_g == w.point.n_g;
+      if (v.parallel() || w.parallel()) return v.kind == w.kind && v.point.n_g == w.point.n_g;
       return v.position() == w.position();
     };
     while (s < std::min(k, m) && same_place(a[s], b[s])) ++s;
     while (t < std::min(k, m) - s && same_place(a[k - 1 - t], b[m - 1 - t])) ++t;
     // Ends that are points, or light of one direction, are the same whether or not they were
     // deleted.
-    if (t == 1 && at_.scene.sensor().dirac_position()) return;
+    const Sensor& sensor = at_.scene.sensor();
+    if (t == 1 && (sensor.dirac_position() || sensor.parallel())) return;
     if (s == 1 && is_dirac(at_.scene.emitter(a[0].emitter).kind())) return;
     if (s == k) return;
     // So is what follows from a specular vertex.

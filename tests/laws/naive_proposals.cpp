@@ -37,6 +37,8 @@ LastRay trace(const Scene& scene, const Path& path, const Stretch& s, const Vec3
   Vec3 w = direction(path, s.from, s.from + s.step());
   if (x.infinite())
     x.point.position = from_infinity(scene, path[s.from + 1].position(), w) + change;
+  else if (x.parallel())
+    x.point.position += change;
   else
     w = normalize(w + change);
   for (int i = s.from + s.step(); i != s.to; i += s.step()) {
@@ -57,7 +59,7 @@ LastRay trace(const Scene& scene, const Path& path, const Stretch& s, const Vec3
 }
 
 double cosine(const Scene& scene, const Vertex& x, const Vec3& w) {
-  if (x.kind == VertexKind::Sensor) return scene.sensor().D(w);
+  if (x.on_sensor()) return scene.sensor().D(w);
   return x.on_surface() ? std::abs(dot(x.point.n_g, w)) : 1.0;
 }
 
@@ -72,13 +74,18 @@ Measured log_density(const Scene& scene, const Path& path, const Stretch& s) {
   return sum += {std::log(cosine(scene, path[s.to], back))};
 }
 
-/// Solid angle density of a direction whose raster position is uniform.
+/// Solid angle density of a direction whose raster position is uniform; of parallel rays that
+/// across them.
 double raster_density(const Scene& scene, const Path& path) {
   const Vec3 o = path[last(path)].position(), w = direction(path, last(path), last(path) - 1);
   const Frame frame(w);
+  const bool parallel = scene.sensor().parallel();
   const auto derivative = [&](const Vec3& e) {
     // One-sided where the film ends.
-    const auto at = [&](double h) { return scene.sensor().raster(o, normalize(w + h * e)); };
+    const auto at = [&](double h) {
+      return parallel ? scene.sensor().raster(o + h * e, w)
+                      : scene.sensor().raster(o, normalize(w + h * e));
+    };
     const auto more = at(kStep), less = at(-kStep);
     const double steps = (more ? kStep : 0) + (less ? kStep : 0);
     return (more.value_or(*at(0)) - less.value_or(*at(0))) / steps;
@@ -130,7 +137,7 @@ std::vector<Held> held_vertices(const Scene& scene, const Path& path, bool flips
       const Held h{i, step};
       const RGB tau_q = held_edge(scene, path, h).tau_q;
       const bool in_fog = path[i].in_medium() || std::min({tau_q.x, tau_q.y, tau_q.z}) < 1;
-      const bool walks = flips && h.far(path) >= 0 && !path[h.far(path)].infinite();
+      const bool walks = flips && h.far(path) >= 0 && !path[h.far(path)].parallel();
       if (in_fog && (!path[h.beyond()].degenerate || walks)) all.push_back(h);
     }
   }
@@ -159,7 +166,7 @@ struct Line {
     tau = held_edge(scene, path, h).tau_q;
     Vertex end;
     Edge edge;
-    const bool eye = start.kind == VertexKind::Sensor;
+    const bool eye = start.on_sensor();
     extend_to_surface(scene, start, w, end, edge, eye ? scene.sensor().near_distance(w) : 0.0,
                       kInfinity, std::numeric_limits<std::int64_t>::max());
     wall = edge.length;
@@ -208,7 +215,7 @@ double flip_density(const Line& y, const Vertex& far) {
     sum += 0.5 * y.du_dt(c) / wall + 0.5 * y.du_dt(c) * step_pdf(wall - y.u(c), wall);
   }
   sum /= channels;
-  if (far.infinite()) return sum;
+  if (far.parallel()) return sum;
   const double foot = dot(far.position() - y.o, y.w);
   const double D = length(far.position() - y.o - foot * y.w);
   const double angle = std::atan((y.wall - foot) / D) + std::atan(foot / D);
@@ -270,7 +277,7 @@ std::vector<Way> manifold_ways(const Scene& scene, const Path& x, const Path& y)
       const Stretch s{i, free_vertex(x, i, step)};
       if (x[i].degenerate || s.to < 0) continue;
       const int far = free_vertex(x, s.to, step);
-      if (far < 0 || std::abs(far - s.to) < 2 || x[far].infinite()) continue;
+      if (far < 0 || std::abs(far - s.to) < 2 || x[far].parallel()) continue;
       all.push_back(way(scene, i + step, far - step, x, y,
                         [&](const Path&, const Path& to) { return log_traced(scene, to, s); }));
     }
@@ -305,15 +312,15 @@ std::vector<Way> held_ways(const Scene& scene, const Path& x, const Path& y, boo
 }  // namespace
 
 Measured log_ray_jacobian(const Scene& scene, const Path& path, const Stretch& s) {
-  const bool direct = s.from + s.step() == s.to, parallel = path[s.from].infinite();
-  if (direct && (parallel || path[s.to].infinite())) return {};
+  const bool direct = s.from + s.step() == s.to, parallel = path[s.from].parallel();
+  if (direct && (parallel || path[s.to].parallel())) return {};
   if (direct) return {-2 * std::log(distance(path, s.from, s.to))};
   const Frame start(direction(path, s.from, s.from + s.step()));
   const double h = parallel ? kStep * scene.radius() : kStep;
   const Vec3 across = direction(path, s.to - s.step(), s.to);
   const auto arrives = [&](const Vec3& change) {
     const LastRay ray = trace(scene, path, s, change);
-    if (path[s.to].infinite()) return ray.d;
+    if (path[s.to].parallel()) return ray.d;
     const double t = dot(path[s.to].position() - ray.o, across) / dot(ray.d, across);
     return ray.o + t * ray.d;
   };
@@ -337,7 +344,8 @@ Measured log_reduced_over_formal(const Scene& scene, const Path& path) {
     // D_a and D_b are in both.
     sum += log_ray_jacobian(scene, path, {a, b});
     for (int i = a; i < b; ++i)
-      if (!path[i].infinite()) sum += {2 * std::log(distance(path, i, i + 1))};
+      if (!path[i].parallel() && !path[i + 1].parallel())
+        sum += {2 * std::log(distance(path, i, i + 1))};
     for (int i = a + 1; i < b; ++i) {
       const SurfacePoint& p = path[i].point;
       const Vec3 in = direction(path, i, i - 1), out = direction(path, i, i + 1);
@@ -363,7 +371,7 @@ std::vector<Way> ways(const std::string& mutation, const Scene& scene, const Pat
 
 bool same_vertex(const Vertex& a, const Vertex& b) {
   if (a.kind != b.kind || a.degenerate != b.degenerate || a.emitter != b.emitter) return false;
-  if (a.infinite()) return a.point.n_g == b.point.n_g;
+  if (a.parallel()) return a.point.n_g == b.point.n_g;
   if (a.position() != b.position() || a.medium != b.medium) return false;
   return !a.on_surface() ||
          (a.id == b.id && a.point.n_g == b.point.n_g && a.point.shading.n == b.point.shading.n);

@@ -25,7 +25,9 @@ bool near_lens(const Scene& scene, const Path& path) {
 
 Reach reach(const Scene& scene, const Path& path) {
   const int k = static_cast<int>(path.size());
-  const auto connects = [&](int s) { return !path[s - 1].degenerate && !path[s].degenerate; };
+  const auto connects = [&](int s) {
+    return !path[s - 1].degenerate && !path[s].degenerate && has_ray(path[s - 1], path[s]);
+  };
   Reach r;
   r.path = hittable(scene, path[0]) || (k > 2 && connects(1));
   r.light = connects(k - 1) && !near_lens(scene, path);
@@ -99,7 +101,7 @@ Sampling sample(const Scene& scene, const Estimator& estimator, bool classified,
         };
         add(Restriction::All);
         if (!classified) continue;
-        const Reach can = reach(scene, assemble(w.light, c.s, w.eye, c.t));
+        const Reach can = reach(scene, assemble(scene, w.light, c.s, w.eye, c.t));
         if (can.path) add(Restriction::ByPath);
         if (can.light) add(Restriction::ByLight);
       }

@@ -85,7 +85,7 @@ Pictures render_tiles(const Scene& scene, const Estimator& estimator, bool class
         const double value = luminance(c.value);
         result.all.replicates[r][tile] += value;
         if (!classified) continue;
-        const Path path = assemble(w.light, c.s, w.eye, c.t);
+        const Path path = assemble(scene, w.light, c.s, w.eye, c.t);
         excess[r][tile] += value * shadow_ray_excess(path);
         classes[r][configuration_text(path)] += value;
         if (reach(scene, path).light) result.by_light.replicates[r][tile] += value;

@@ -56,7 +56,7 @@ const MitsubaRay kRays[] = {
 };
 // clang-format on
 
-std::shared_ptr<const Sensor> sensor_of(const MitsubaRay& ray) {
+PerspectiveSettings settings_of(const MitsubaRay& ray) {
   PerspectiveSettings s;
   s.to_world = Transform::look_at(Vec3(1, 2, 3), Vec3(4, 1, -2), Vec3(0.1, 1, 0.2));
   s.fov_x_degrees = 50;
@@ -71,6 +71,11 @@ std::shared_ptr<const Sensor> sensor_of(const MitsubaRay& ray) {
   s.principal_point_offset = ray.principal_point_offset;
   s.near_clip = kNear;
   s.far_clip = kFar;
+  return s;
+}
+
+std::shared_ptr<const Sensor> sensor_of(const MitsubaRay& ray) {
+  const PerspectiveSettings s = settings_of(ray);
   return ray.lens ? make_thinlens_sensor(s, kAperture, kFocus) : make_perspective_sensor(s);
 }
 
@@ -89,6 +94,54 @@ TEST(SensorMitsuba, RaysAreMitsubas) {
     ASSERT_TRUE(raster);
     EXPECT_LT(glm::length(*raster - ray.raster), 2 * kSinglePrecision);
   }
+}
+
+/// orthographic, with to_world scaled by (3, 2, 4) first; the last sees an identity sheared by
+/// x += 0.3 y.
+struct ParallelRay {
+  Vec3 scale;
+  bool crop;
+  Vec2 raster;
+  Vec3 o;
+};
+constexpr double kParallelMaxt = 99.5;  // whatever the scale
+
+// clang-format off
+const ParallelRay kParallelRays[] = {
+    {{1, 1, 1}, false, {0.25, 0.7}, {0.78114378, 1.77784884, 2.32150865}},
+    {{1, 1, 1}, false, {0.9, 0.1}, {2.03337264, 2.22856426, 2.98270273}},
+    {{1, 1, 1}, true, {0.25, 0.7}, {0.87734795, 1.98120534, 2.33855963}},
+    {{1, 1, 1}, true, {0.9, 0.1}, {1.50346231, 2.20656323, 2.66915679}},
+    {{3, 2, 4}, false, {0.25, 0.7}, {0.65693343, 1.48118556, 0.53149092}},
+    {{3, 2, 4}, false, {0.9, 0.1}, {4.23375177, 2.13686705, 2.54644585}},
+    {{3, 2, 4}, true, {0.25, 0.7}, {0.89058644, 1.87844718, 0.59223044}},
+    {{3, 2, 4}, true, {0.9, 0.1}, {2.67899561, 2.20628786, 1.59970796}},
+};
+// clang-format on
+
+TEST(SensorMitsuba, ParallelRaysAreMitsubas) {
+  constexpr double kSinglePrecision = 3e-6;
+  const Vec3 axis = normalize(Vec3(3, -1, -5));
+  for (const ParallelRay& ray : kParallelRays) {
+    PerspectiveSettings s = settings_of({false, ray.crop, {0, 0}, {}, {}, {}, 0});
+    s.to_world = s.to_world * Transform::scale(ray.scale);
+    const auto sensor = make_orthographic_sensor(s);
+    const SensorRay ours = sensor->sample_direction(Vec3(0), ray.raster);
+    EXPECT_LT(length(ours.w - axis), kSinglePrecision);
+    EXPECT_LT(length(ours.origin + sensor->near_distance(axis) * axis - ray.o), kSinglePrecision);
+    EXPECT_NEAR(sensor->far_distance(axis) - sensor->near_distance(axis), kParallelMaxt, 1e-9);
+    const auto raster = sensor->raster(ray.o, axis);
+    ASSERT_TRUE(raster);
+    EXPECT_LT(glm::length(*raster - ray.raster), 2 * kSinglePrecision);
+  }
+  Mat4 shear(1.0);
+  shear[1][0] = 0.3;
+  PerspectiveSettings s = settings_of({});
+  s.to_world = Transform(shear);
+  const auto sensor = make_orthographic_sensor(s);
+  EXPECT_LT(
+      length(sensor->sample_direction(Vec3(0), Vec2(0.25, 0.7)).origin - Vec3(0.428, -0.24, 0)),
+      kSinglePrecision);
 }
 
 }  // namespace

@@ -229,6 +229,84 @@ TEST(Sensor, NothingEntersBesideTheLens) {
   EXPECT_EQ(sensor->W_e(kOrigin + 1.001 * kAperture * film.down, film.view), 0);
 }
 
+/// Positions on the film; half as much again around it is beside it. Oblique to the rays where the
+/// matrix shears.
+TEST(Sensor, OrthographicPositionsAreATriple) {
+  for (const Camera& c : cameras())
+    for (const double shear : {0.0, 0.7}) {
+      PerspectiveSettings s = c.settings;
+      Mat4 stretch(1.0);
+      stretch[0] = {3, 0, shear, 0};
+      stretch[1] = {0.4 * shear, 2, -shear, 0};
+      s.to_world = s.to_world * Transform(stretch);
+      const auto sensor = make_orthographic_sensor(s);
+      const Vec3 view = normalize(kTarget - kOrigin);
+      const Vec3 a(s.to_world.matrix()[0]), b(s.to_world.matrix()[1]);
+      const Vec2 whole(s.width, s.height);
+      const Vec2 crop = s.crop_width == 0 ? whole : Vec2(s.crop_width, s.crop_height);
+      const double aspect = whole.y / whole.x;
+      const auto on_plane = [&](const Vec2& raster) {
+        const Vec2 U =
+            (Vec2(s.crop_x, s.crop_y) + raster * crop) / whole + s.principal_point_offset;
+        return kOrigin + (1 - 2 * U.x) * a + (1 - 2 * U.y) * aspect * b;
+      };
+      Chart chart;
+      chart.point = [&](const Vec2& p) { return on_plane(1.5 * p - 0.25); };
+      chart.coordinates = [&](const Vec3& x) {
+        const Vec3 o = on_plane(Vec2(0)), e = on_plane(Vec2(1, 0)) - o,
+                   f = on_plane(Vec2(0, 1)) - o;
+        const Vec3 n = cross(e, f);
+        return (Vec2(dot(cross(x - o, f), n), dot(cross(e, x - o), n)) / dot(n, n) + 0.25) / 1.5;
+      };
+      // Area across the rays.
+      chart.jacobian = [&](const Vec2&) {
+        const Vec3 o = on_plane(Vec2(0));
+        return 2.25 *
+               std::fabs(dot(cross(on_plane(Vec2(1, 0)) - o, on_plane(Vec2(0, 1)) - o), view));
+      };
+      const testing::Triple triple{
+          2,
+          [&](const Vec3& u) -> std::optional<Vec3> {
+            const SensorRay ray = sensor->sample_direction(Vec3(0), Vec2(u));
+            EXPECT_LT(length(ray.w - view), 1e-14);
+            EXPECT_NEAR(ray.pdf_sigma, sensor->pdf_sigma(ray.origin, view), 1e-12 * ray.pdf_sigma);
+            return ray.origin;
+          },
+          [&](const Vec3& x) { return sensor->pdf_sigma(x, view); },
+          [&](const Vec3& x, const Vec3&) -> std::optional<Vec3> {
+            const auto raster = sensor->raster(x, view);
+            if (!raster) return std::nullopt;
+            return Vec3(*raster, 0);
+          }};
+      EXPECT_EQ(check_triple("orthographic " + c.name, triple, chart), "");
+    }
+}
+
+TEST(Sensor, OrthographicSeesPointsFromTheFeetOfTheirRays) {
+  PerspectiveSettings s = cameras()[1].settings;
+  Mat4 stretch(1.0);
+  stretch[0] = {3, 0, 0.5, 0};
+  s.to_world = s.to_world * Transform(stretch);
+  const auto sensor = make_orthographic_sensor(s);
+  EXPECT_TRUE(sensor->parallel());
+  EXPECT_FALSE(sensor->dirac_position());
+  const Vec3 view = normalize(kTarget - kOrigin);
+  EXPECT_EQ(sensor->pdf_A(kOrigin), 1);
+  EXPECT_EQ(sensor->D(view), 1);
+  EXPECT_EQ(sensor->invert_position(kOrigin, Vec2(0.25, 0.75)), Vec2(0.25, 0.75));
+  Rng rng(testing::suite_seed(), RngDomain::Test, 703, 0);
+  for (int i = 0; i < 100; ++i) {
+    const SensorRay ray = sensor->sample_direction(kOrigin, uniform2(rng));
+    const Vec3 seen = ray.origin + 7 * rng.uniform() * ray.w;
+    EXPECT_LT(length(sensor->position_seeing(seen) - ray.origin), 1e-13);
+    EXPECT_EQ(sensor->W_e(seen, -view), 0);
+    EXPECT_EQ(sensor->pdf_sigma(seen, -view), 0);
+    EXPECT_FALSE(sensor->raster(seen, -view));
+    // ∫ W_e dA = 1, for it is a constant.
+    EXPECT_EQ(sensor->W_e(seen, view), sensor->pdf_sigma(seen, view));
+  }
+}
+
 TEST(Sensor, ScalesWithTheScene) {
   PerspectiveSettings s = cameras()[2].settings;
   s.near_clip = 0.5;
@@ -268,14 +346,20 @@ TEST(Sensor, RefusesImpossibleSettings) {
     EXPECT_THROW(make_perspective_sensor(s), std::domain_error);
     EXPECT_THROW(make_thinlens_sensor(s, 0.1, 1), std::domain_error);
   };
+  const auto broken_film = [&](auto&& change) {
+    broken(change);
+    PerspectiveSettings s = cameras()[1].settings;
+    change(s);
+    EXPECT_THROW(make_orthographic_sensor(s), std::domain_error);
+  };
   broken([](auto& s) { s.fov_x_degrees = 0; });
   broken([](auto& s) { s.fov_x_degrees = 180; });
   broken([](auto& s) { s.fov_x_degrees = std::nan(""); });
-  broken([](auto& s) { s.near_clip = 0; });
-  broken([](auto& s) { s.far_clip = s.near_clip; });
-  broken([](auto& s) { s.crop_x = 101; });
-  broken([](auto& s) { s.crop_height = 0; });
-  broken([](auto& s) { s.width = 0; });
+  broken_film([](auto& s) { s.near_clip = 0; });
+  broken_film([](auto& s) { s.far_clip = s.near_clip; });
+  broken_film([](auto& s) { s.crop_x = 101; });
+  broken_film([](auto& s) { s.crop_height = 0; });
+  broken_film([](auto& s) { s.width = 0; });
   broken([](auto& s) { s.to_world = Transform::scale(Vec3(1, 1, 2)); });
   Mat4 shear(1.0);
   shear[1][0] = 0.2;

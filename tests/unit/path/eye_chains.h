@@ -17,7 +17,7 @@ void for_each_chain(const Scene& scene, std::uint64_t stream_number, int sample,
   Vec2 raster;
   trace_eye_subpath(scene, stream, 8, eye, raster);
   if (eye.empty() || eye.back().x.infinite()) return;
-  const Path path = assemble(light, 0, eye, static_cast<int>(eye.size()));
+  const Path path = assemble(scene, light, 0, eye, static_cast<int>(eye.size()));
   const int last = static_cast<int>(path.size()) - 1;
   for (int a = 0; a < last; ++a) {
     int b = a + 1;

@@ -37,10 +37,10 @@ class Techniques : public ::testing::TestWithParam<testing::TestScene> {
       trace_light_subpath(*scene_, stream, max_vertices, light);
       for (int t = 1; t <= static_cast<int>(eye.size()); ++t) {
         if (const auto c = run_into_light(*scene_, eye, t))
-          check(assemble(light, 0, eye, t), 0, *c);
+          check(assemble(*scene_, light, 0, eye, t), 0, *c);
         for (int s = 1; s <= static_cast<int>(light.size()); ++s)
           if (const auto c = join(*scene_, light, s, eye, t))
-            check(assemble(light, s, eye, t), s, *c);
+            check(assemble(*scene_, light, s, eye, t), s, *c);
       }
     }
   }
@@ -85,14 +85,14 @@ TEST_P(Techniques, ReducedContributionFollowsFromTheTracedDensity) {
       double formal = 1, events = 1;
       for (; path[b].degenerate; b += step) {
         const Vec3 to = normalize(path[b + step].position() - path[b].position());
-        const Vec3 from = path[b - step].infinite()
+        const Vec3 from = path[b - step].parallel()
                               ? -path[b - step].point.n_g
                               : normalize(path[b - step].position() - path[b].position());
         // Sampling a Dirac event: probability P instead of P n² |cosθ| δ.
         events *=
             sqr(relative_index(*scene_, path[b], to)) * std::abs(dot(path[b].point.shading.n, to));
         formal *= D(*scene_, path[b], from);
-        if (!path[b - step].infinite())
+        if (!path[b - step].parallel())
           formal /= glm::dot(path[b - step].position() - path[b].position(),
                              path[b - step].position() - path[b].position());
       }

@@ -146,6 +146,30 @@ TEST(Thinlens, NeedsAnApertureAndFocusesFarAway) {
             std::string::npos);
 }
 
+TEST(Orthographic, SpansTwoUnitsUnlessScaled) {
+  SceneFolder folder;
+  const auto size = [&](const std::string& properties) {
+    const auto scene = load_sensor(folder, properties, "orthographic");
+    const auto at = [&](double u, double v) {
+      return scene.sensor->sample_direction(Vec3(0), Vec2(u, v)).origin;
+    };
+    return Vec3(at(0, 0).x - at(1, 0).x, at(0, 0).y - at(0, 1).y,
+                scene.sensor->near_distance(Vec3(0, 0, 1)));
+  };
+  EXPECT_LT(length(size("") - Vec3(2, 1.5, 0.01)), 1e-12);
+  EXPECT_LT(length(size(R"(<transform name="to_world"><scale x="10" y="4"/></transform>
+                           <float name="near_clip" value="2"/><float name="far_clip" value="20"/>)") -
+                   Vec3(20, 6, 2)),
+            1e-12);
+  EXPECT_TRUE(folder.warnings.empty());
+  EXPECT_NE(
+      folder.error(R"(<sensor type="orthographic"><float name="near_clip" value="0"/></sensor>)")
+          .find("greater than zero"),
+      std::string::npos);
+  load_sensor(folder, R"(<float name="fov" value="40"/>)", "orthographic");
+  EXPECT_EQ(folder.warnings.size(), 1u);
+}
+
 TEST(Sensor, DeclaresItsMedium) {
   SceneFolder folder;
   const auto scene =
