@@ -34,6 +34,15 @@ void validate(const TriangleMeshData& data) {
     if (!data.uvs.empty() && !is_finite(Vec3(data.uvs[i], 0)))
       throw std::domain_error("mesh texture coordinate " + std::to_string(i) + " is not finite");
   }
+  for (const MeshAttribute& a : data.attributes) {
+    const std::size_t count = a.per_primitive ? data.triangles.size() : n;
+    if ((a.channels != 1 && a.channels != 3) ||
+        a.values.size() != count * static_cast<std::size_t>(a.channels))
+      throw std::domain_error("mesh attribute " + a.name + " has the wrong number of values");
+    for (const float value : a.values)
+      if (!std::isfinite(value))
+        throw std::domain_error("a value of mesh attribute " + a.name + " is not finite");
+  }
   for (std::size_t i = 0; i < data.triangles.size(); ++i)
     for (const std::uint32_t v : data.triangles[i])
       if (v >= n)
@@ -72,6 +81,7 @@ class Mesh final : public Shape {
       normals_.emplace_back(length(n) > 0 ? normalize(n) : Vec3(0));
     triangles_ = std::move(data.triangles);
     uvs_ = std::move(data.uvs);
+    attributes_ = std::move(data.attributes);
     drop_degenerate();
     std::vector<double> areas;
     areas.reserve(triangles_.size());
@@ -153,6 +163,18 @@ class Mesh final : public Shape {
     return {area_.invert(x.primitive, u.x), u.y};
   }
 
+  std::span<const MeshAttribute> attributes() const override { return attributes_; }
+  RGB attribute(const SurfacePoint& x, const MeshAttribute& a) const override {
+    const auto value = [&](std::size_t i) {
+      if (a.channels == 1) return RGB(a.values[i]);
+      return RGB(a.values[3 * i], a.values[3 * i + 1], a.values[3 * i + 2]);
+    };
+    if (a.per_primitive) return value(x.primitive);
+    const Triangle& t = triangles_[x.primitive];
+    const RGB first = value(t[0]);
+    return first + x.local.x * (value(t[1]) - first) + x.local.y * (value(t[2]) - first);
+  }
+
   Tessellation tessellate() const override {
     return {{positions_.begin(), positions_.end() - 1}, triangles_};
   }
@@ -165,8 +187,17 @@ class Mesh final : public Shape {
   };
 
   void drop_degenerate() {
-    const std::size_t dropped = std::erase_if(
-        triangles_, [this](const Triangle& t) { return degenerate(corners(positions_, t)); });
+    std::vector<std::size_t> kept;
+    for (std::size_t i = 0; i < triangles_.size(); ++i)
+      if (!degenerate(corners(positions_, triangles_[i]))) kept.push_back(i);
+    const std::size_t dropped = triangles_.size() - kept.size();
+    for (std::size_t i = 0; dropped > 0 && i < kept.size(); ++i) {
+      triangles_[i] = triangles_[kept[i]];
+      for (MeshAttribute& a : attributes_)
+        for (int c = 0; a.per_primitive && c < a.channels; ++c)
+          a.values[i * a.channels + c] = a.values[kept[i] * a.channels + c];
+    }
+    triangles_.resize(kept.size());
     if (dropped > 0)
       log_warning("mesh: dropped " + std::to_string(dropped) + " triangles without area");
     if (triangles_.empty()) throw std::domain_error("mesh has no triangle with an area");
@@ -191,6 +222,7 @@ class Mesh final : public Shape {
   std::vector<glm::vec3> positions_, normals_;
   std::vector<Vec2> uvs_;
   std::vector<Triangle> triangles_;
+  std::vector<MeshAttribute> attributes_;
   DiscreteDistribution area_;
   Bounds bounds_;
 };

@@ -20,4 +20,10 @@ bool Shape::avoids(std::uint32_t primitive, const Bounds& box) const {
   return in_front == 0 || in_front == 8;
 }
 
+const MeshAttribute* Shape::find_attribute(const std::string& name) const {
+  for (const MeshAttribute& a : attributes())
+    if (a.name == name) return &a;
+  return nullptr;
+}
+
 }  // namespace fogbow

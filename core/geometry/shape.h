@@ -4,6 +4,7 @@
 #include <cstdint>
 #include <optional>
 #include <span>
+#include <string>
 #include <vector>
 
 #include "core/math/frame.h"
@@ -54,6 +55,14 @@ struct Tessellation {
   std::vector<std::array<std::uint32_t, 3>> triangles;
 };
 
+/// One or three numbers for each vertex or each primitive of a mesh.
+struct MeshAttribute {
+  std::string name;
+  int channels = 1;
+  bool per_primitive = false;
+  std::vector<float> values;
+};
+
 /// A surface in world space; immutable. Positions are evaluated in double precision, and a hit is
 /// refined in it.
 class Shape {
@@ -99,6 +108,13 @@ class Shape {
   virtual SurfacePoint sample(const Vec2& u) const = 0;
   /// The u with sample(u) = point.
   virtual Vec2 invert(const SurfacePoint& point) const = 0;
+
+  /// What its file says of it beyond geometry.
+  virtual std::span<const MeshAttribute> attributes() const { return {}; }
+  /// Null if there is none of that name.
+  const MeshAttribute* find_attribute(const std::string& name) const;
+  /// At a point; one number counts for all channels.
+  virtual RGB attribute(const SurfacePoint&, const MeshAttribute&) const { return RGB(0); }
 
   /// For boundary checks: exact for polygonal shapes, an inscribed mesh for curved ones.
   virtual Tessellation tessellate() const = 0;

@@ -245,6 +245,14 @@ class Properties {
   const std::vector<Property>& values() const { return values_; }
   const std::vector<NestedObject>& objects() const { return objects_; }
   const std::vector<Warning>& warnings() const { return warnings_; }
+  /// What textures need of the shape that they will lie on.
+  struct AttributeNeed {
+    Texture::AttributeUse use;
+    double min, max;  ///< of its values times the scale
+    SourceLocation where;
+  };
+  const std::vector<AttributeNeed>& attribute_needs() const { return attribute_needs_; }
+
   /// Every name asked for so far.
   const std::vector<std::string>& known_names() const { return known_names_; }
 
@@ -273,6 +281,13 @@ class Properties {
       throw Error(ErrorKind::Scene, value->where,
                   "\"" + name + "\" is given twice: as a value and as a texture");
     const Texture::Range range = texture->range();
+    if (const auto use = texture->attribute()) {
+      // Textures of textures may have to be reflectances: what holds for range() must hold for
+      // them.
+      attribute_needs_.push_back(
+          {*use, min, kind_ == "texture" ? std::min(max, range.greatest) : max, where(name)});
+      return texture;
+    }
     if (!(range.least >= min && range.greatest <= max))
       fail(name, "the values of the texture \"" + name + "\" " + must_lie(min, max) +
                      "; it has some from " + std::to_string(range.least) + " to " +
@@ -308,6 +323,7 @@ class Properties {
   std::vector<Property> values_;
   std::vector<NestedObject> objects_;
   std::vector<Warning> warnings_;
+  std::vector<AttributeNeed> attribute_needs_;
   mutable std::vector<std::string> known_names_;
 };
 

@@ -1,7 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
 #include <algorithm>
+#include <array>
 #include <memory>
+#include <optional>
+#include <string>
 #include <type_traits>
 #include <utility>
 
@@ -27,6 +30,16 @@ class Texture {
   virtual Range range() const = 0;
   /// Of color() over the unit square of texture coordinates, or roughly so.
   virtual RGB mean() const = 0;
+  /// Columns and rows of pixels; those that have none are squares.
+  virtual std::array<int, 2> resolution() const { return {1, 1}; }
+
+  /// What the shape must bring along, by whose values color() multiplies `scale`; range() then says
+  /// what they have to satisfy.
+  struct AttributeUse {
+    std::string name;
+    double scale;
+  };
+  virtual std::optional<AttributeUse> attribute() const { return std::nullopt; }
 };
 
 /// What a scene gives as one value or as a texture: T is RGB or double.
@@ -47,6 +60,9 @@ class Textured {
       return texture_->number(x);
   }
   bool constant() const { return !texture_; }
+  std::array<int, 2> resolution() const {
+    return texture_ ? texture_->resolution() : std::array<int, 2>{1, 1};
+  }
   /// The value, or the texture's mean.
   const T& mean() const { return value_; }
   Texture::Range range() const {

@@ -46,6 +46,7 @@ class Bitmap final : public Texture {
   Vec2 gradient(const SurfacePoint& x) const override;
   Range range() const override { return range_; }
   RGB mean() const override { return mean_; }
+  std::array<int, 2> resolution() const override { return {width_, height_}; }
 
  private:
   /// The four texels around a point, and where it lies between them.

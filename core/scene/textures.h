@@ -29,4 +29,11 @@ std::shared_ptr<const Texture> make_checkerboard_texture(const Textured<RGB>& co
                                                          const Textured<RGB>& color1,
                                                          const Transform& to_uv = {});
 
+/// The same everywhere.
+std::shared_ptr<const Texture> make_constant_texture(const RGB& value);
+/// A value of each vertex or face of a mesh by its name, "vertex_…" or "face_…", times `scale`.
+/// Shapes that have none of that name must not be asked.
+std::shared_ptr<const Texture> make_mesh_attribute_texture(const std::string& name,
+                                                           double scale = 1);
+
 }  // namespace fogbow

@@ -15,7 +15,7 @@ namespace fogbow {
 // or out of range; nothing is allocated for counts that the length of the text cannot hold.
 
 /// Stanford PLY 1.0, ascii or binary in either byte order; unknown elements and properties are
-/// skipped.
+/// skipped, but for attribute_columns().
 TriangleMeshData parse_ply(std::string_view bytes, const std::string& name);
 /// Wavefront OBJ: v, vt, vn and f; everything else is ignored. One vertex per distinct (v, vt, vn).
 TriangleMeshData parse_obj(std::string_view text, const std::string& name);

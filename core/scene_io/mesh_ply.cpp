@@ -9,6 +9,7 @@
 #include <optional>
 
 #include "core/scene_io/diagnostics.h"
+#include "core/scene_io/mesh_attributes.h"
 #include "core/scene_io/mesh_file.h"
 #include "core/scene_io/parse_values.h"
 
@@ -292,6 +293,19 @@ class PlyParser {
     }
   }
 
+  static std::vector<AttributeColumns> attributes_of(const PlyElement& element, bool of_faces) {
+    std::vector<std::string> names;
+    for (const PlyProperty& p : element.properties) names.push_back(p.count_type ? "" : p.name);
+    return attribute_columns(names, of_faces);
+  }
+  void keep(std::vector<AttributeColumns>& attributes) {
+    for (AttributeColumns& a : attributes) {
+      for (const float value : a.attribute.values)
+        if (!std::isfinite(value)) fail("a value of " + quote(a.attribute.name) + " is not finite");
+      mesh_.attributes.push_back(std::move(a.attribute));
+    }
+  }
+
   double column(int index) const { return row_[static_cast<std::size_t>(index)]; }
   void require_finite(double a, double b, double c, const char* what) const {
     if (!std::isfinite(a) || !std::isfinite(b) || !std::isfinite(c))
@@ -312,6 +326,7 @@ class PlyParser {
     mesh_.positions.reserve(element.count);
     if (normals) mesh_.normals.reserve(element.count);
     if (uvs) mesh_.uvs.reserve(element.count);
+    std::vector<AttributeColumns> attributes = attributes_of(element, false);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_row(element, -1);
       mesh_.positions.emplace_back(column(p[0]), column(p[1]), column(p[2]));
@@ -324,7 +339,9 @@ class PlyParser {
         mesh_.uvs.emplace_back(column(uv[0]), column(uv[1]));
         require_finite(column(uv[0]), column(uv[1]), 0, "texture coordinate");
       }
+      for (AttributeColumns& a : attributes) a.take(row_);
     }
+    keep(attributes);
   }
 
   void read_faces(const PlyElement& element) {
@@ -336,6 +353,7 @@ class PlyParser {
     for (const PlyElement& other : elements_)
       if (other.name == "vertex") vertex_count = static_cast<double>(other.count);
     mesh_.triangles.reserve(element.count);
+    std::vector<AttributeColumns> attributes = attributes_of(element, true);
     for (std::uint64_t i = 0; i < element.count; ++i) {
       read_row(element, list);
       if (list_.size() < 3) fail("a face needs three vertices");
@@ -343,11 +361,14 @@ class PlyParser {
         if (index < 0 || index >= vertex_count)
           fail("a face names vertex " + std::to_string(static_cast<std::int64_t>(index)) +
                ", but there are " + std::to_string(static_cast<std::int64_t>(vertex_count)));
-      for (std::size_t j = 2; j < list_.size(); ++j)
+      for (std::size_t j = 2; j < list_.size(); ++j) {
         mesh_.triangles.push_back({static_cast<std::uint32_t>(list_[0]),
                                    static_cast<std::uint32_t>(list_[j - 1]),
                                    static_cast<std::uint32_t>(list_[j])});
+        for (AttributeColumns& a : attributes) a.take(row_);
+      }
     }
+    keep(attributes);
   }
 
   std::string_view bytes_;

@@ -4,6 +4,7 @@
 #include <map>
 #include <memory>
 #include <string>
+#include <vector>
 
 #include "core/geometry/shape.h"
 #include "core/image/film.h"
@@ -43,8 +44,9 @@ const PluginTable<std::shared_ptr<const Shape>(Properties&, const FileContext&)>
 const PluginTable<std::shared_ptr<const Bsdf>(Properties&)>& bsdf_plugins();
 const PluginTable<std::shared_ptr<const Texture>(Properties&, const PictureContext&)>&
 texture_plugins();
-/// Emitters that stand alone; "area" needs a shape.
-const PluginTable<std::shared_ptr<Emitter>(Properties&, const PictureContext&)>& emitter_plugins();
+/// Emitters that stand alone, one plugin possibly several; "area" needs a shape.
+const PluginTable<std::vector<std::shared_ptr<Emitter>>(Properties&, const PictureContext&)>&
+emitter_plugins();
 const PluginTable<std::shared_ptr<Emitter>(Properties&, std::shared_ptr<const Shape>)>&
 surface_emitter_plugins();
 const PluginTable<std::shared_ptr<const Sensor>(Properties&, const FilmSettings&)>&

@@ -145,16 +145,25 @@ PerturbationSettings perturbation(Properties& p) {
   return {flip, p.boolean("use_shadowing_function", true)};
 }
 
+/// Maps of normals and heights need a picture.
+void refuse_attribute(Properties& p, const Texture& texture) {
+  if (texture.attribute())
+    throw Error(ErrorKind::Scene, p.where(),
+                "\"" + p.plugin() + "\" cannot be made of a mesh attribute");
+}
+
 std::shared_ptr<const Bsdf> normalmap(Properties& p) {
   const auto normals = p.take<Texture>("normalmap");
   if (!normals)
     throw Error(ErrorKind::Scene, p.where(), "\"normalmap\" needs the texture \"normalmap\"");
+  refuse_attribute(p, *normals);
   return make_normal_map(nested_bsdf(p), normals, perturbation(p));
 }
 
 std::shared_ptr<const Bsdf> bumpmap(Properties& p) {
   const auto height = p.take_one<Texture>();
   if (!height) throw Error(ErrorKind::Scene, p.where(), "\"bumpmap\" needs a nested texture");
+  refuse_attribute(p, *height);
   const double scale = p.number("scale", 1);
   return make_bump_map(nested_bsdf(p), height, scale, perturbation(p));
 }

@@ -59,12 +59,31 @@ std::shared_ptr<const Texture> checkerboard(Properties& p, const PictureContext&
                                    p.transform("to_uv"));
 }
 
+std::shared_ptr<const Texture> rawconstant(Properties& p, const PictureContext&) {
+  for (const Property& value : p.values())
+    if (value.name == "value" && (std::holds_alternative<Property::Point>(value.value) ||
+                                  std::holds_alternative<Property::Vector>(value.value)))
+      return make_constant_texture(p.point("value", Vec3(0)));
+  if (!p.has("value"))
+    throw Error(ErrorKind::Scene, p.where(), "\"rawconstant\" needs a \"value\"");
+  return make_constant_texture(p.color("value", RGB(0)));
+}
+
+std::shared_ptr<const Texture> mesh_attribute(Properties& p, const PictureContext&) {
+  const std::string name = p.required_string("name");
+  const double scale = p.number("scale", 1);
+  return make_mesh_attribute_texture(name, scale);
+}
+
 }  // namespace
 
 const PluginTable<std::shared_ptr<const Texture>(Properties&, const PictureContext&)>&
 texture_plugins() {
   static const PluginTable<std::shared_ptr<const Texture>(Properties&, const PictureContext&)>
-      table{{"bitmap", bitmap}, {"checkerboard", checkerboard}};
+      table{{"bitmap", bitmap},
+            {"checkerboard", checkerboard},
+            {"mesh_attribute", mesh_attribute},
+            {"rawconstant", rawconstant}};
   return table;
 }
 

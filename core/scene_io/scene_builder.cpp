@@ -6,6 +6,7 @@
 
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene_io/film_window.h"
+#include "core/scene_io/mesh_attributes.h"
 #include "core/scene_io/parse_values.h"
 #include "core/scene_io/read_property.h"
 #include "core/util/log.h"
@@ -187,6 +188,7 @@ void SceneBuilder::read_child(Object& object, const XmlNode& child) {
   const Shared& nested = shared(node);
   object.hash.add(name ? std::string_view(*name) : std::string_view());
   object.hash.add(nested.hash);
+  object.needs.insert(object.needs.end(), nested.needs.begin(), nested.needs.end());
   object.properties.add(NestedObject{name ? *name : "", nested.object, child.where()});
 }
 
@@ -197,7 +199,15 @@ const SceneBuilder::Shared& SceneBuilder::shared(const XmlNode& node) {
   Object object = read(node);
   NestedObject::Object made = make_shared_object(object);
   finish(object);
-  return shared_.emplace(&node, Shared{std::move(made), object.hash.value()}).first->second;
+  return shared_.emplace(&node, Shared{std::move(made), object.hash.value(), all_needs(object)})
+      .first->second;
+}
+
+std::vector<Properties::AttributeNeed> SceneBuilder::all_needs(const Object& object) {
+  std::vector<Properties::AttributeNeed> all = object.needs;
+  const auto& own = object.properties.attribute_needs();
+  all.insert(all.end(), own.begin(), own.end());
+  return all;
 }
 
 /// Before the object is read: nothing that stands in an unknown one is worth an error.
@@ -385,6 +395,7 @@ void SceneBuilder::surface(const XmlNode& node, const Transform* instance) {
     surface.bsdf = fallback;
   }
   if (surface.medium_boundary || surface.bsdf->eta() != 1) surface.priority = priority(p);
+  check_attributes(*surface.shape, all_needs(object));
   finish(object);
   hash_.add(object.hash.value());
   scene_.surfaces.push_back(std::move(surface));
@@ -400,6 +411,12 @@ void SceneBuilder::repaired(const Surface& surface, const std::string& what) con
 void SceneBuilder::attach_emitter(Surface& surface, const Child& child, ContentHash& hash) {
   const Nesting guard(open_, *child.node);
   Object object = read(*child.node);
+  // Emitters look at their texture as they are made.
+  std::vector<Properties::AttributeNeed> needs = object.needs;
+  for (const auto& texture : object.properties.objects())
+    if (const auto* t = std::get_if<std::shared_ptr<const Texture>>(&texture.object))
+      if (const auto use = (*t)->attribute()) needs.push_back({*use, 0, kInfinity, texture.where});
+  check_attributes(*surface.shape, needs);
   surface.emitter = construct(surface_emitter_plugins(), object.properties, surface.shape);
   finish(object);
   hash.add(object.hash.value());
@@ -414,8 +431,13 @@ void SceneBuilder::emitter(const XmlNode& node) {
   if (surface_emitter_plugins().contains(plugin))
     throw Error(ErrorKind::Scene, node.where(),
                 "the emitter " + quote(plugin) + " must stand inside a shape");
-  scene_.emitters.push_back(construct(emitter_plugins(), object.properties,
-                                      PictureContext{files_, object.hash, options_.read_image}));
+  for (const auto& nested : object.properties.objects())
+    if (const auto* t = std::get_if<std::shared_ptr<const Texture>>(&nested.object);
+        !object.needs.empty() || (t && (*t)->attribute()))
+      throw Error(ErrorKind::Scene, nested.where, "only on a mesh can attributes be looked up");
+  for (auto& made : construct(emitter_plugins(), object.properties,
+                              PictureContext{files_, object.hash, options_.read_image}))
+    scene_.emitters.push_back(std::move(made));
   finish(object);
   hash_.add(object.hash.value());
 }

@@ -43,6 +43,7 @@ class SceneBuilder {
     Properties properties;
     std::vector<Child> children;
     ContentHash hash;
+    std::vector<Properties::AttributeNeed> needs;  ///< of the shared objects in it
 
     /// All children of one tag, which thereby are used.
     std::vector<const Child*> take(const std::string& tag);
@@ -51,6 +52,7 @@ class SceneBuilder {
   struct Shared {
     NestedObject::Object object;
     std::uint64_t hash;
+    std::vector<Properties::AttributeNeed> needs;
   };
   class Nesting;
 
@@ -61,6 +63,7 @@ class SceneBuilder {
   const Shared& shared(const XmlNode& node);
   NestedObject::Object make_shared_object(Object& object);
   void finish(Object& object);
+  static std::vector<Properties::AttributeNeed> all_needs(const Object& object);
 
   FilmSettings film(const Child* child, ContentHash& hash);
   void apply_overrides(FilmSettings& film) const;

@@ -50,6 +50,9 @@ constexpr Dropped kDropped[] = {
     {"sensor", "", "shutter_open"},
     {"sensor", "", "shutter_close"},
     {"medium", "heterogeneous", "method"},
+    {"emitter", "sky", "resolution"},
+    {"emitter", "sunsky", "resolution"},
+    {"emitter", "sun", "resolution"},
 };
 
 /// Defaults that have changed: where none of the properties is given, the first one had a value.
@@ -110,6 +113,8 @@ class Upgrade {
     upgrade_properties(node);
     if (node.tag == "shape") give_null_bsdf(node);
     if (node.tag == "texture") join_uv(node);
+    for (const char* plugin : {"sky", "sun", "sunsky"})
+      if (applies("emitter", plugin, node)) turn_sky(node);
   }
 
  private:
@@ -198,6 +203,14 @@ class Upgrade {
     if (!media || bsdf) return;
     tell(shape, "a boundary of media without a bsdf has a \"null\" one");
     shape.children.push_back(make_node(shape, "bsdf", {{"type", "null"}}));
+  }
+
+  /// The zenith was +y, and the ground darker.
+  void turn_sky(XmlNode& sky) {
+    tell(sky, "a sky whose zenith is +y, not +z, is told by \"y_up\"");
+    sky.children.push_back(make_node(sky, "boolean", {{"name", "y_up"}, {"value", "true"}}));
+    if (find_child(sky, "albedo")) return;
+    sky.children.push_back(make_node(sky, "float", {{"name", "albedo"}, {"value", "0.15"}}));
   }
 
   /// Scales and offsets of texture coordinates.
