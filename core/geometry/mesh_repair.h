@@ -21,8 +21,9 @@ struct MeshRepair {
 };
 
 /// Joins borders that nearly meet, removes triangles without area and doubles, turns the rest one
-/// way (outwards, once closed) and fills small holes. Vertices keep their normals and texture
-/// coordinates, holes take those of their rims; a sound mesh comes back as it is.
+/// way (outwards, once closed) and fills small holes. Vertices keep their normals, texture
+/// coordinates and attributes, triangles theirs; holes take those of their rims; a sound mesh comes
+/// back as it is.
 TriangleMeshData repair_mesh(TriangleMeshData mesh, MeshRepair& done);
 
 }  // namespace fogbow

@@ -10,6 +10,7 @@
 
 #include <algorithm>
 #include <map>
+#include <numeric>
 #include <set>
 
 #include "core/geometry/mesh_repair.h"
@@ -44,6 +45,8 @@ class Repair {
     Bounds bounds;
     for (const Vec3& p : mesh_.positions) bounds.extend(p);
     radius_ = bounds.radius();
+    source_.resize(mesh_.triangles.size());
+    std::iota(source_.begin(), source_.end(), 0u);
     Welder welder(std::max(kWeld * radius_, 1e-300));
     for (const Vec3& p : mesh_.positions) place_.push_back(welder.add(p));
     places_ = std::move(welder.vertices);
@@ -68,13 +71,22 @@ class Repair {
 
   void remove_useless() {
     std::set<Triangle> seen;
-    done_.removed += std::erase_if(mesh_.triangles, [&](const Triangle& t) {
+    const auto is_useless = [&](const Triangle& t) {
       Triangle p = places(t);
       std::ranges::sort(p);
       if (p[0] == p[1] || p[1] == p[2] || !seen.insert(p).second) return true;
       const Vec3 e1 = places_[p[1]] - places_[p[0]], e2 = places_[p[2]] - places_[p[0]];
       return length(cross(e1, e2)) == 0;
-    });
+    };
+    std::size_t kept = 0;
+    for (std::size_t i = 0; i < mesh_.triangles.size(); ++i) {
+      if (is_useless(mesh_.triangles[i])) continue;
+      mesh_.triangles[kept] = mesh_.triangles[i];
+      source_[kept++] = source_[i];
+    }
+    done_.removed += mesh_.triangles.size() - kept;
+    mesh_.triangles.resize(kept);
+    source_.resize(kept);
   }
 
   // --- Cracks
@@ -200,7 +212,7 @@ class Repair {
 
   void collect() {
     const std::size_t count = mesh_.triangles.size();
-    std::map<SurfaceMesh::Vertex_index, std::uint32_t> known;
+    std::map<SurfaceMesh::Vertex_index, std::uint32_t> known, triangle_at;
     std::vector<Triangle> result;
     for (const auto face : surface_.faces()) {
       const std::size_t i = face;
@@ -208,19 +220,36 @@ class Repair {
       for (int k = 0; k < 3; ++k) {
         const auto corner = corners(face)[k];
         if (i < count) known[corner] = vertex_at(i, corner);
+        if (i < count) triangle_at[corner] = source_[i];
         t[k] = known.at(corner);
       }
       result.push_back(t);
-      if (i < count) done_.flipped += is_turned(i);
+      if (i < count)
+        done_.flipped += is_turned(i);
+      else
+        source_.push_back(triangle_at.at(corners(face)[0]));
     }
     mesh_.triangles = std::move(result);
+    for (MeshAttribute& a : mesh_.attributes)
+      if (a.per_primitive) follow_triangles(a);
     for (std::size_t v = 0; v < mesh_.positions.size(); ++v)
       mesh_.positions[v] = places_[place_[v]];
+  }
+
+  void follow_triangles(MeshAttribute& a) const {
+    std::vector<float> values;
+    const auto n = static_cast<std::size_t>(a.channels);
+    for (const std::uint32_t i : source_)
+      values.insert(values.end(), a.values.begin() + static_cast<std::ptrdiff_t>(i * n),
+                    a.values.begin() + static_cast<std::ptrdiff_t>((i + 1) * n));
+    a.values = std::move(values);
   }
 
   TriangleMeshData mesh_;
   MeshRepair& done_;
   double radius_ = 0;
+  /// Of each triangle: the one of the file that it is, or, in a hole, one at its rim.
+  std::vector<std::uint32_t> source_;
   std::vector<std::uint32_t> place_;  ///< of each vertex
   std::vector<Vec3> places_;
   SurfaceMesh surface_;  ///< faces in the order of the triangles, then those of holes

@@ -14,7 +14,7 @@ struct TriangleMeshData {
   std::vector<Vec3> normals;
   std::vector<Vec2> uvs;
   std::vector<std::array<std::uint32_t, 3>> triangles;
-  std::vector<MeshAttribute> attributes;
+  std::vector<MeshAttribute> attributes{};
 };
 
 /// Smooth where normals are given. Degenerate triangles are dropped and counted in a warning.

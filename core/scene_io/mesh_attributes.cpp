@@ -41,7 +41,11 @@ std::vector<AttributeColumns> attribute_columns(const std::vector<std::string>& 
     const std::string full = (of_faces ? "face_" : "vertex_") + name;
     for (const AttributeColumns& other : all)
       if (other.attribute.name == full) return;
-    all.push_back({{full, static_cast<int>(columns.size()), of_faces, {}}, columns});
+    AttributeColumns& added = all.emplace_back();
+    added.attribute.name = full;
+    added.attribute.channels = static_cast<int>(columns.size());
+    added.attribute.per_primitive = of_faces;
+    added.columns = columns;
   };
   add("color", columns_of(names, "", {"r", "g", "b"}, false));
   add("color", columns_of(names, "", {"red", "green", "blue"}, false));

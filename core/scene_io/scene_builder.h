@@ -43,7 +43,7 @@ class SceneBuilder {
     Properties properties;
     std::vector<Child> children;
     ContentHash hash;
-    std::vector<Properties::AttributeNeed> needs;  ///< of the shared objects in it
+    std::vector<Properties::AttributeNeed> needs{};  ///< of the shared objects in it
 
     /// All children of one tag, which thereby are used.
     std::vector<const Child*> take(const std::string& tag);

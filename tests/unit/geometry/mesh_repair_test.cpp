@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "core/geometry/mesh_check.h"
 #include "core/math/random.h"
 #include "tests/helpers/statistics.h"
@@ -73,6 +75,41 @@ TEST(Repair, StitchesCracks) {
   EXPECT_EQ(done.stitched, 3 * ball().triangles.size());
   EXPECT_EQ(done.filled, 0u);
   expect_sound(after, before, 2e-3);
+}
+
+/// What a file says of its triangles stays with them when others go; a hole takes a neighbour's.
+TEST(Repair, KeepsWhatTrianglesAndVerticesSay) {
+  const auto middle = [](const TriangleMeshData& mesh, const std::array<std::uint32_t, 3>& t) {
+    return static_cast<float>(mesh.positions[t[0]].x + mesh.positions[t[1]].x +
+                              mesh.positions[t[2]].x);
+  };
+  TriangleMeshData before = ball();
+  before.triangles.insert(before.triangles.begin() + 5, before.triangles[2]);  // a double
+  before.triangles.erase(before.triangles.begin() + 40);                       // a hole
+  MeshAttribute of_triangles{"face_x", 1, true, {}}, of_vertices{"vertex_p", 3, false, {}};
+  for (const auto& t : before.triangles) of_triangles.values.push_back(middle(before, t));
+  for (const Vec3& p : before.positions)
+    for (int c = 0; c < 3; ++c) of_vertices.values.push_back(static_cast<float>(p[c]));
+  before.attributes = {of_triangles, of_vertices};
+
+  MeshRepair done;
+  const TriangleMeshData after = repair_mesh(before, done);
+  EXPECT_EQ(done.removed, 1u);
+  EXPECT_EQ(done.added, 1u);
+  ASSERT_EQ(after.attributes.size(), 2u);
+  EXPECT_EQ(after.attributes[1].values, of_vertices.values);
+  const std::vector<float>& values = after.attributes[0].values;
+  const std::size_t count = after.triangles.size();
+  ASSERT_EQ(values.size(), count);
+  for (std::size_t i = 0; i + 1 < count; ++i)
+    EXPECT_EQ(values[i], middle(after, after.triangles[i])) << i;
+  const bool of_a_neighbour = std::any_of(after.triangles.begin(), after.triangles.end() - 1,
+                                          [&](const std::array<std::uint32_t, 3>& t) {
+                                            const auto& last = after.triangles.back();
+                                            return middle(after, t) == values.back() &&
+                                                   std::ranges::find_first_of(t, last) != t.end();
+                                          });
+  EXPECT_TRUE(of_a_neighbour);
 }
 
 TEST(Repair, TurnsTrianglesOutwards) {
