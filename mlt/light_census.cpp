@@ -14,8 +14,8 @@ namespace {
 
 /// Sums of one group of samples.
 struct Tally {
-  double luminance = 0, seen_light = 0, by_next_event = 0, surface_caustic = 0, volume_caustic = 0,
-         caustic_seen_through = 0, in_media = 0;
+  double luminance = 0, seen_light = 0, seen_glow = 0, by_next_event = 0, surface_caustic = 0,
+         volume_caustic = 0, caustic_seen_through = 0, in_media = 0;
   std::uint64_t dirac_lights = 0, dirac_lit_through = 0, seen_through = 0;
   std::vector<double> totals;  ///< luminance of each sample
 };
@@ -31,10 +31,11 @@ void classify(const Scene& scene, const Path& path, double value, Tally& tally) 
   while (first_smooth < last && path[first_smooth].degenerate) ++first_smooth;
   if (first_smooth == last) {
     if (is_seen(scene, path[0])) tally.seen_light += value;
+    if (path[0].in_medium()) tally.seen_glow += value;
     return;
   }
   if (first_smooth == 1) {
-    tally.by_next_event += path[0].in_medium() ? 0 : value;
+    tally.by_next_event += value;
     return;
   }
   (path[first_smooth].in_medium() ? tally.volume_caustic : tally.surface_caustic) += value;
@@ -112,6 +113,7 @@ LightCensus take_light_census(const Scene& scene, const EstimatorSettings& setti
   LightCensus census;
   census.luminance = mean(&Tally::luminance);
   census.seen_light = mean(&Tally::seen_light);
+  census.seen_glow = mean(&Tally::seen_glow);
   census.by_next_event = mean(&Tally::by_next_event);
   census.surface_caustic = mean(&Tally::surface_caustic);
   census.volume_caustic = mean(&Tally::volume_caustic);

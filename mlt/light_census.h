@@ -13,6 +13,7 @@ struct LightCensus {
   // Parts of it, each a mean luminance of its own. "Lit through" and "seen through" speak of
   // degenerate vertices between the light, or the eye, and the first vertex that scatters smoothly.
   ReplicateMean seen_light;       ///< the eye sees a light, directly or through specular surfaces
+  ReplicateMean seen_glow;        ///< the same of a medium that emits
   ReplicateMean by_next_event;    ///< next-event estimation of path tracing can make it
   ReplicateMean surface_caustic;  ///< surfaces lit through specular surfaces
   ReplicateMean volume_caustic;   ///< media lit through specular surfaces

@@ -41,6 +41,7 @@ void print_ways(const LightCensus& census) {
   std::printf("the light of the picture (mean luminance %.4g +- %.2g):\n", census.luminance.mean,
               census.luminance.standard_error);
   row("lights seen directly or through specular surfaces", census.seen_light);
+  row("glowing media seen directly or through specular surfaces", census.seen_glow);
   row("what next-event estimation can make", census.by_next_event);
   row("surfaces lit through specular surfaces (caustics)", census.surface_caustic);
   row("media lit through specular surfaces (volume caustics)", census.volume_caustic);

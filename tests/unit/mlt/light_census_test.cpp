@@ -68,9 +68,30 @@ TEST(LightCensus, FindsWhatOtherEstimatorsFind) {
       EXPECT_EQ(direct.mean, 0);
     expect_same(census.seen_light, mean_of(*make_seen_light(scene, kSettings),
                                            [](const auto&, const auto&) { return true; }));
-    EXPECT_NEAR(census.seen_light.mean + census.by_next_event.mean + census.surface_caustic.mean +
-                    census.volume_caustic.mean,
+    EXPECT_NEAR(census.seen_light.mean + census.seen_glow.mean + census.by_next_event.mean +
+                    census.surface_caustic.mean + census.volume_caustic.mean,
                 census.luminance.mean, 1e-9 * census.luminance.mean);
+  }
+}
+
+/// Where nothing is specular, what glows is seen by paths of two vertices, and next-event
+/// estimation makes the rest.
+TEST(LightCensus, TellsGlowThatIsSeenFromGlowThatLights) {
+  for (const char* name : {"flame", "patchy-flame"}) {
+    SCOPED_TRACE(name);
+    const Scene scene(make_test_scene(name));
+    const LightCensus census = take_light_census(scene, kSettings, kSamples, 1);
+    const auto path = make_path_tracer(scene, kSettings);
+    const auto all = [](const auto&, const auto&) { return true; };
+    const auto straight = [](const auto&, const Contribution& c) { return c.k == 2; };
+    const auto scattered = [](const auto&, const Contribution& c) { return c.k > 2; };
+    ReplicateMean seen{
+        census.seen_light.mean + census.seen_glow.mean,
+        std::hypot(census.seen_light.standard_error, census.seen_glow.standard_error)};
+    EXPECT_GT(census.seen_glow.mean, 0);
+    expect_same(seen, mean_of(*path, straight));
+    expect_same(census.seen_light, mean_of(*make_seen_light(scene, kSettings), all));
+    expect_same(census.by_next_event, mean_of(*path, scattered));
   }
 }
 
