@@ -32,7 +32,7 @@ TEST(Scenes, LoadStrictlyAndSandboxed) {
     EXPECT_NE(scene.content_hash, 0u);
     ++count;
   }
-  EXPECT_GE(count, 12);
+  EXPECT_GE(count, 18);
 }
 
 /// One file for each plugin, with every property that the documentation of Mitsuba 3 names; those
