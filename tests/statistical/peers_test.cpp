@@ -35,7 +35,7 @@ struct Peer {
   std::string name;
   std::array<int, 4> crop;  ///< of the fast suite; width 0: only in the long one
   bool path_converges;      ///< next-event estimation reaches nearly all of the light
-  bool by_mitsuba = true;   ///< the reference; else by our own bdpt
+  bool by_mitsuba = true;   ///< the reference; else by one of our own estimators
   int max_depth = kMaxDepth;
 };
 
