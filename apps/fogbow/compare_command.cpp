@@ -82,7 +82,7 @@ void print_comparison(const ComparisonResult& result) {
   std::printf("relMSE           %.6g\n", result.rel_mse);
   std::printf("mean A / mean B  %.6g, %.6g, %.6g\n", ratio.x, ratio.y, ratio.z);
   std::printf("luminance ratio  %s\n",
-              result.has_errors
+              result.luminance_ratio_error > 0
                   ? with_error(result.luminance_ratio, result.luminance_ratio_error).c_str()
                   : format("%.6g", result.luminance_ratio).c_str());
   print_tiles(result);

@@ -7,6 +7,7 @@
 #include <span>
 
 #include "apps/fogbow/console.h"
+#include "core/image/image_metadata.h"
 
 namespace fogbow::cli {
 
@@ -100,8 +101,8 @@ void describe_run(Image& image, const Scene& scene, const RenderArguments& argum
 }
 
 void describe_state(Image& image, double b, double b_stderr, double samples, double seconds) {
-  image.metadata["b"] = static_cast<float>(b);
-  image.metadata["bStandardError"] = static_cast<float>(b_stderr);
+  image.metadata[kMetadataB] = static_cast<float>(b);
+  image.metadata[kMetadataBError] = static_cast<float>(b_stderr);
   image.metadata["samples"] = format("%.0f", samples);  // too many for an EXR integer
   image.metadata["renderTimeSeconds"] = static_cast<float>(seconds);
 }

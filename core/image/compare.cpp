@@ -6,6 +6,7 @@
 #include <numeric>
 #include <string>
 
+#include "core/image/image_metadata.h"
 #include "core/util/check.h"
 #include "core/util/error.h"
 
@@ -51,13 +52,28 @@ class ErrorView {
       : view_(separate ? color(*separate, what) : ColorView(image, "Error.")),
         present_(view_.complete()) {
     if (separate) require_same_size(image, *separate, what);
+    const double b = attribute(image, kMetadataB), error = attribute(image, kMetadataBError);
+    if (b > 0 && error > 0) relative_b_error_ = error / b;
   }
   bool present() const { return present_; }
   double variance(int x, int y) const { return present_ ? sqr(luminance(view_(x, y))) : 0; }
+  /// Of the mean luminance, from the sum of the pixels' variances: pixels of chains are not
+  /// independent, and what the render says of b is then the larger.
+  double mean_variance(double sum, double mean, double pixels) const {
+    return std::max(sum / sqr(pixels), sqr(relative_b_error_ * mean));
+  }
 
  private:
+  static double attribute(const Image& image, const char* name) {
+    const auto found = image.metadata.find(name);
+    const auto* value =
+        found == image.metadata.end() ? nullptr : std::get_if<float>(&found->second);
+    return value ? *value : 0;
+  }
+
   ColorView view_;
   bool present_;
+  double relative_b_error_ = 0;
 };
 
 std::vector<bool> excluded_pixels(const Image& image, const std::vector<PixelRectangle>& areas) {
@@ -136,7 +152,9 @@ class Comparison {
     const double a = luminance(result_.mean_image), b = luminance(result_.mean_reference);
     result_.luminance_ratio = a / b;
     result_.luminance_ratio_error =
-        std::sqrt(variance_image + sqr(a / b) * variance_reference) / (n * std::fabs(b));
+        std::sqrt(image_error_.mean_variance(variance_image, a, n) +
+                  sqr(a / b) * reference_error_.mean_variance(variance_reference, b, n)) /
+        std::fabs(b);
   }
 
   void squared_errors() {

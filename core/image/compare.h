@@ -40,9 +40,10 @@ struct ComparisonResult {
   double rel_mse = 0;  ///< mean of (I−R)²/(R² + 0.01·L²), L the reference's mean luminance
   double rel_mse_epsilon = 0;  ///< 0.01·L²
   RGB mean_image{0}, mean_reference{0};
-  RGB mean_ratio{0};                 ///< of the means, a channel each; NaN where both are zero
-  double luminance_ratio = 0;        ///< of the mean luminances
-  double luminance_ratio_error = 0;  ///< its standard error from the pixels' errors; 0 without any
+  RGB mean_ratio{0};           ///< of the means, a channel each; NaN where both are zero
+  double luminance_ratio = 0;  ///< of the mean luminances
+  double luminance_ratio_error =
+      0;  ///< its standard error, from those of pixels or of b; 0 without any
 
   std::vector<TileDifference> tiles;  ///< row-major; those fully excluded are missing
   bool has_errors = false;        ///< some standard errors were given: what follows has a meaning

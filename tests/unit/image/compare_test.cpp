@@ -155,6 +155,21 @@ TEST(Compare, TileScoresAreStandardNormalWhereErrorsAreTrue) {
   EXPECT_LT(std::fabs(r.luminance_ratio - 1) / r.luminance_ratio_error, 5);
 }
 
+/// Pixels by chains share the error of b, which the render knows and no pixel's error tells.
+TEST(Compare, MeansAreNoSurerThanB) {
+  Noisy n = noisy_pair(0, 1);
+  ComparisonOptions options;
+  options.reference_error = &n.reference_error;
+  const double mean = compare_images(n.image, n.reference, options).luminance_ratio;
+  const double of_pixels = compare_images(n.image, n.reference, options).luminance_ratio_error;
+  n.image.metadata["b"] = 5.0f;
+  n.image.metadata["bStandardError"] = 0.1f;
+  const double with_b = compare_images(n.image, n.reference, options).luminance_ratio_error;
+  EXPECT_NEAR(with_b, std::hypot(0.02 * mean, of_pixels * 0.05 / std::hypot(0.1, 0.05)), 2e-5);
+  n.image.metadata["bStandardError"] = 1e-9f;
+  EXPECT_EQ(compare_images(n.image, n.reference, options).luminance_ratio_error, of_pixels);
+}
+
 TEST(Compare, UnderstatedErrorsAreFound) {
   const Noisy n = noisy_pair(1, 0.7);
   ComparisonOptions options;
