@@ -30,8 +30,8 @@ void classify(const Scene& scene, const Path& path, double value, Tally& tally) 
   std::size_t first_smooth = 1;
   while (first_smooth < last && path[first_smooth].degenerate) ++first_smooth;
   if (first_smooth == last) {
-    if (is_seen(scene, path[0])) tally.seen_light += value;
-    if (path[0].in_medium()) tally.seen_glow += value;
+    if (hittable(scene, path[0]))
+      (path[0].in_medium() ? tally.seen_glow : tally.seen_light) += value;
     return;
   }
   if (first_smooth == 1) {

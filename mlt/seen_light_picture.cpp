@@ -17,7 +17,7 @@ constexpr int kFractionBits = 24;
 bool has_visible_emitters(const Scene& scene) {
   for (std::size_t i = 0; i < scene.emitter_count(); ++i) {
     const EmitterKind kind = scene.emitter(i).kind();
-    if (kind == EmitterKind::Area || kind == EmitterKind::Infinite) return true;
+    if (!is_dirac(kind)) return true;
   }
   return false;
 }
@@ -84,12 +84,14 @@ void SeenLightPicture::add_to(RenderResult& result) const {
   result.b_stderr = std::hypot(result.b_stderr, seen.standard_error);
   result.non_finite += sampling_->refused();
   const auto scale = PictureScale::of_samples(sampling_->samples());
-  for (ClassShare share : length_shares(sampling_->tally(), scale)) {
+  for (const ClassShare& share : length_shares(sampling_->tally(), scale))
     add(result.lengths, share);
-    if (result.classes.empty()) continue;
-    share.configuration = configuration_text({share.k, 0});
-    add(result.classes, share);
-  }
+  if (!result.classes.empty())
+    for (const bool glow : {false, true})
+      for (ClassShare share : length_shares(sampling_->tally(glow), scale)) {
+        share.configuration = configuration_text({share.k, glow});
+        add(result.classes, share);
+      }
   std::ranges::sort(result.lengths, {}, &ClassShare::k);
   std::ranges::stable_sort(result.classes, std::greater(), &ClassShare::value);
 }

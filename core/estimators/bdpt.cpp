@@ -37,13 +37,13 @@ class Bdpt final : public Estimator {
     bool specular = true;  // all vertices between the first and this
     for (int t = 1; t <= eye_size; ++t) {
       const Vertex& x = w.eye[t - 1].x;
-      const bool left_out = (!settings_.seen_light && specular && is_seen(scene_, x)) ||
+      const bool left_out = (!settings_.seen_light && specular && hittable(scene_, x)) ||
                             settings_.hides(scene_, x, t);
       if (x.emitter >= 0 && t >= 2 && !left_out) add_emission(scene_, w, t, raster);
       specular = specular && (t == 1 || x.degenerate);
       for (int s = 1; s <= light_size && s + t <= max_vertices_; ++s) {
-        const bool seen = s + t == 2 && is_seen(scene_, w.light[0].x);
-        if (seen && (!settings_.seen_light || settings_.hide_emitters)) continue;
+        const bool seen = s + t == 2 && hittable(scene_, w.light[0].x);
+        if (seen && (!settings_.seen_light || settings_.hides(scene_, w.light[0].x, 2))) continue;
         const auto c = join(scene_, w.light, s, w.eye, t);
         if (c) w.add({t == 1 ? c->raster : raster, c->weight * c->value, s + t, s, t});
       }

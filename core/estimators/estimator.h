@@ -15,6 +15,7 @@ struct Contribution {
   int k;                      ///< vertices of the path
   int s, t;                   ///< vertices from the light and from the eye
   int infinite_emitter = -1;  ///< which of them the eye's subpath ran into, s = 0
+  bool glow = false;          ///< seen light from a medium
 };
 
 /// Buffers an estimator reuses; one a thread or chain.
@@ -50,12 +51,13 @@ struct EstimatorSettings {
   bool null_collisions = false;
   /// bdpt: with the light that make_seen_light() samples.
   bool seen_light = true;
-  /// Without the light that the eye sees directly, through index-matched boundaries included.
+  /// Without the lights that the eye sees directly, through index-matched boundaries included;
+  /// media that glow are none.
   bool hide_emitters = false;
 
   /// Whether paths of k vertices from x₁ are left out.
   bool hides(const Scene& scene, const Vertex& x, int k) const {
-    return hide_emitters && k == 2 && is_seen(scene, x);
+    return hide_emitters && k == 2 && !x.in_medium() && hittable(scene, x);
   }
 };
 
@@ -67,8 +69,9 @@ std::unique_ptr<Estimator> make_light_tracer(const Scene& scene, const Estimator
 /// All techniques (s,t) over surface and medium vertices, weighted by the balance heuristic
 /// [Veach1997].
 std::unique_ptr<Estimator> make_bdpt(const Scene& scene, const EstimatorSettings& settings);
-/// The light alone that the eye sees directly or by specular vertices only (is_seen()): where on
-/// the film it lies is easily found by looking, and hardly by chains.
+/// The light alone that the eye sees directly or by specular vertices only
+/// (MeasuredPath::is_seen_light()): where on the film it lies is easily found by looking, and
+/// hardly by chains.
 std::unique_ptr<Estimator> make_seen_light(const Scene& scene, const EstimatorSettings& settings);
 
 }  // namespace fogbow

@@ -13,10 +13,16 @@ void add_at(std::vector<double>& sums, int k, double value) {
   sums[k] += value;
 }
 
+void add_to(LengthTally& sums, const LengthTally& more) {
+  for (int g = 0; g < Film::kGroups; ++g)
+    for (std::size_t k = 0; k < more[g].size(); ++k)
+      add_at(sums[g], static_cast<int>(k), more[g][k]);
+}
+
 }  // namespace
 
 struct IndependentSampling::Row {
-  LengthTally tally;
+  std::array<LengthTally, 2> tallies;
   std::uint64_t refused = 0;
 };
 
@@ -45,7 +51,7 @@ void IndependentSampling::run_row(int row, Row& result) {
     RandomStream light(rng);
     estimator_.sample(light, eye, w);
     for (const Contribution& c : w.contributions) {
-      add_at(result.tally[group], c.k, luminance(c.value));
+      add_at(result.tallies[c.glow][group], c.k, luminance(c.value));
       if (only_length_ > 0 && c.k != only_length_) continue;
       film_.splat(c.raster, c.value, group, uniform2(offsets));
     }
@@ -59,12 +65,16 @@ void IndependentSampling::run_round() {
   // Rows are summed in their order: the tally does not depend on threads either.
   for (const Row& row : rows) {
     refused_ += row.refused;
-    for (int g = 0; g < Film::kGroups; ++g)
-      for (std::size_t k = 0; k < row.tally[g].size(); ++k)
-        add_at(tally_[g], static_cast<int>(k), row.tally[g][k]);
+    for (const bool glow : {false, true}) add_to(tallies_[glow], row.tallies[glow]);
   }
   samples_ += static_cast<std::uint64_t>(width_) * height_;
   ++round_;
+}
+
+LengthTally IndependentSampling::tally() const {
+  LengthTally sum = tallies_[false];
+  add_to(sum, tallies_[true]);
+  return sum;
 }
 
 Image IndependentSampling::develop() const {

@@ -27,7 +27,9 @@ class IndependentSampling {
   const Film& film() const { return film_; }
   std::uint64_t samples() const { return samples_; }
   std::uint64_t refused() const { return refused_ + film_.refused(); }
-  const LengthTally& tally() const { return tally_; }
+  LengthTally tally() const;
+  /// The part of it that is, or is not, seen light of media.
+  const LengthTally& tally(bool glow) const { return tallies_[glow]; }
   /// Mean luminance and the standard error between groups.
   Image develop() const;
   int width() const { return width_; }
@@ -43,7 +45,7 @@ class IndependentSampling {
   int only_length_;
   int width_, height_;
   std::uint64_t round_ = 0, samples_ = 0, refused_ = 0;
-  LengthTally tally_;
+  std::array<LengthTally, 2> tallies_;  ///< the second of glow
 };
 
 /// Width and height of the part of the film that is rendered.

@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
+#include <array>
+
 #include "core/estimators/estimator.h"
 
 namespace fogbow {
@@ -10,7 +13,10 @@ namespace {
 class SeenLight final : public Estimator {
  public:
   SeenLight(const Scene& scene, const EstimatorSettings& settings)
-      : scene_(scene), settings_(settings), max_vertices_(settings.max_depth + 1) {}
+      : scene_(scene),
+        settings_(settings),
+        max_vertices_(settings.max_depth + 1),
+        glows_(std::ranges::any_of(scene.media(), [](const auto& m) { return m->emits(); })) {}
   const char* name() const override { return "seen light"; }
 
   void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
@@ -34,8 +40,8 @@ class SeenLight final : public Estimator {
     SampleStream& u;
     Workspace& w;
 
-    void add(const RGB& throughput, const RGB& radiance, int k) const {
-      w.add({raster, importance * throughput * radiance, k, 0, k});
+    void add(const RGB& throughput, const RGB& radiance, int k, bool glow = false) const {
+      w.add({raster, importance * throughput * radiance, k, 0, k, -1, glow});
     }
   };
   /// Branches with less than this part of what the ray started with are subject to roulette.
@@ -44,6 +50,7 @@ class SeenLight final : public Estimator {
   /// Along w from x to the vertex number k from the eye.
   void go(const Way& way, const Vertex& x, const Vec3& w, const RGB& throughput, int k,
           double near = 0, double far = kInfinity) const {
+    if (glows_) see_glow(way, x, w, throughput, k, near, far);
     RGB behind(1);
     // Every surface that light passes in part is seen, and what lies behind it.
     for (int passages = 0; !is_black(behind); ++passages) {
@@ -57,6 +64,32 @@ class SeenLight final : public Estimator {
       behind = edge.tau * passage(scene_, next, w);
       if (k < max_vertices_) scatter(way, next, -w, arrived, k);
     }
+  }
+
+  /// One place on the ray, by a free flight that ends in a medium.
+  void see_glow(const Way& way, const Vertex& x, const Vec3& w, const RGB& throughput, int k,
+                double near, double far) const {
+    thread_local RayProfile ray;
+    ray.trace(scene_, x, w, near, far);
+    const RGB ends = RGB(1) - ray.edge().tau_q;  // with these probabilities
+    std::array<int, 3> channels;
+    int count = 0;
+    for (int c = 0; c < 3; ++c)
+      if (ends[c] > 0) channels[count++] = c;
+    if (count == 0) return;
+    const int channel = channels[std::min(static_cast<int>(way.u.next() * count), count - 1)];
+    const auto t = ray.distance(channel, way.u.next() * ends[channel]);
+    if (!t) return;  // on a surface that light passes in part
+    Edge edge;
+    const Vertex place = ray.vertex(scene_, *t, edge);
+    if (place.emitter < 0) return;
+    const RGB sigma_t = place.medium->sigma_t(place.position());
+    double q = 0;
+    for (int i = 0; i < count; ++i) {
+      const int c = channels[i];
+      q += sigma_t[c] * edge.tau_q[c] / ends[c] / count;
+    }
+    if (q > 0) way.add(throughput * edge.tau / q, L_e(scene_, place, -w), k, true);
   }
 
   void see_sky(const Way& way, const Edge& edge, const RGB& throughput, int k) const {
@@ -90,6 +123,7 @@ class SeenLight final : public Estimator {
   const Scene& scene_;
   EstimatorSettings settings_;
   int max_vertices_;
+  bool glows_;
 };
 
 }  // namespace

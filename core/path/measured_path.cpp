@@ -94,7 +94,7 @@ bool MeasuredPath::evaluate(const Scene& scene) {
 bool MeasuredPath::is_seen_light(const Scene& scene) const {
   for (int i = 1; i < last(); ++i)
     if (!vertices_[i].degenerate) return false;
-  return is_seen(scene, vertices_[0]);
+  return hittable(scene, vertices_[0]);
 }
 
 double MeasuredPath::pdf_from_light(const Scene& scene, int i) const {

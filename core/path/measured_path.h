@@ -65,7 +65,9 @@ class MeasuredPath {
   const ScaledProduct<RGB>& f() const { return f_; }
   const Vec2& raster() const { return raster_; }
 
-  /// Whether the eye sees x₁ directly or by degenerate vertices alone (is_seen()).
+  /// Whether the eye sees x₁ directly or by degenerate vertices alone, running
+  /// into it: "seen light", a function of the film's position (and of the place on the ray in
+  /// what glows), up to the choice of events.
   bool is_seen_light(const Scene& scene) const;
 
   /// Density in μ of x[i] sampled from the light, or from the eye, given what comes before it

@@ -111,10 +111,4 @@ inline bool is_unseen(const Scene& scene, const Vertex& x) {
 /// have none in common.
 inline bool has_ray(const Vertex& x, const Vertex& y) { return !(x.parallel() && y.parallel()); }
 
-/// Whether light from x₁ that reaches the eye directly or by degenerate vertices alone is "seen
-/// light": a function of the film's position, up to the choice of events.
-inline bool is_seen(const Scene& scene, const Vertex& x) {
-  return hittable(scene, x) && !x.in_medium();
-}
-
 }  // namespace fogbow

@@ -47,7 +47,9 @@ Estimate column(const std::vector<Sums>& all, int c) {
 bool is_seen_light(const Path& path) {
   for (std::size_t i = 1; i + 1 < path.size(); ++i)
     if (!path[i].degenerate) return false;
-  return path[0].kind == VertexKind::Surface || path[0].kind == VertexKind::InfiniteLight;
+  const VertexKind kind = path[0].kind;
+  return kind == VertexKind::Surface || kind == VertexKind::InfiniteLight ||
+         kind == VertexKind::Medium;
 }
 
 class SeenLight : public ::testing::TestWithParam<TestScene> {};
@@ -85,7 +87,7 @@ TEST_P(SeenLight, IsWhatTheEyeRunsInto) {
     for (int t = 2; t <= static_cast<int>(w.eye.size()); ++t) {
       Vertex& x = w.eye[t - 1].x;
       if (t > 2 && !w.eye[t - 2].x.degenerate) break;
-      if (!is_seen(scene, x)) continue;
+      if (!hittable(scene, x)) continue;
       const std::vector<int> sky = scene.infinite_emitters();
       for (const int emitter : x.infinite() ? sky : std::vector{x.emitter}) {
         x.emitter = emitter;
