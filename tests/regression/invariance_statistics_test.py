@@ -45,9 +45,11 @@ SPECK = """<shape type="obj"><string name="filename" value="rectangle.obj"/><tra
   <translate x="200" y="150" z="100"/></transform><ref id="grey"/></shape>"""
 
 
-def overrides_of(integrator):
-    """Chains that share their time as the light is shared know means best."""
+def overrides_of(integrator, twin):
+    """Chains that share their time as the light is shared know means best. Few starts will do where both sides have the same."""
     overrides = OVERRIDES.get(integrator, {})
+    if integrator == "mlt" and not twin:
+        overrides = overrides | {"luminance_samples": "32768"}
     return overrides | {"two_stage": "false"} if overrides else {}
 
 
@@ -55,13 +57,13 @@ class Manifest:
     def __init__(self, folder):
         self.folder, self.pairs, self.written = folder, [], {}
 
-    def side(self, scene, integrator, more=1, **options):
+    def side(self, scene, integrator, more=1, twin=False, **options):
         more *= NOISY_INTEGRATORS.get(integrator, 1)
         text = text_of(scene)
         if text not in self.written:
             self.written[text] = self.folder.write(f"scene{len(self.written)}", scene)
         return {"scene": self.written[text], "integrator": integrator, "spp": SPP * more,
-                "overrides": overrides_of(integrator), **options}
+                "overrides": overrides_of(integrator, twin and not LONG), **options}
 
     def add(self, name, a, b, replicates=REPLICATES, window=None):
         pair = {"name": name, "a": a, "b": b, "replicates": replicates}
@@ -71,8 +73,9 @@ class Manifest:
 
     def compare(self, name, scene, other, integrators=INTEGRATORS, replicates=FEW, more=1):
         for integrator in integrators:
-            self.add(f"{name}, {integrator}", self.side(scene, integrator, more), self.side(other, integrator, more),
-                     replicates)
+            twin = replicates == FEW
+            self.add(f"{name}, {integrator}", self.side(scene, integrator, more, twin),
+                     self.side(other, integrator, more, twin), replicates)
 
     def agree(self, name, scene, integrators=INTEGRATORS, more=1):
         """The integrators among each other."""

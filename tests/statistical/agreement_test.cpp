@@ -36,12 +36,8 @@ const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 /// the cloud has many classes of little light each.
 Precision precision(const std::string& scene) {
   if (std::getenv("FOGBOW_LONG")) return {0.01, 0.05};
-  if (scene == "water" || scene == "smoke-in-glass") return {0.25, 1};
-  if (scene == "patchy-flame") return {0.2, 0.8};  // emission of media has the heaviest tails
-  if (scene == "droplets" || scene == "fog-in-glass" || scene == "two-kinds-of-glass")
-    return {0.2, 0.8};
-  if (scene == "glass-sphere-fog") return {0.15, 1};
-  return {0.12, 0.6};
+  const std::set<std::string> costly{"water", "smoke-in-glass", "glass-sphere-fog"};
+  return costly.contains(scene) ? Precision{0.25, 1} : Precision{0.2, 0.8};
 }
 
 std::string test_name(const ::testing::TestParamInfo<TestScene>& info) {
