@@ -44,6 +44,9 @@ class BoundaryGroup {
   /// Whether this boundary runs partly inside and partly outside of `other`, which is closed; told
   /// from points spread over it, so that a slight touch may escape.
   bool crosses(const BoundaryGroup& other) const;
+  /// Whether this boundary lies within a distance from that of `other` somewhere; told in the same
+  /// way.
+  bool touches(const BoundaryGroup& other, double distance) const;
   /// Whether no part of this boundary lies outside of `other`; told in the same way.
   bool lies_within(const BoundaryGroup& other) const;
 

@@ -311,6 +311,14 @@ bool BoundaryGroup::crosses(const BoundaryGroup& other) const {
   return false;
 }
 
+bool BoundaryGroup::touches(const BoundaryGroup& other, double distance) const {
+  if (!impl_->bounds.overlaps(other.impl_->bounds)) return false;
+  return std::ranges::any_of(impl_->both_sides, [&](const auto& sides) {
+    const Vec3 x = 0.5 * (sides[0] + sides[1]), n = normalize(sides[0] - sides[1]);
+    return other.contains(x + distance * n) != other.contains(x - distance * n);
+  });
+}
+
 bool BoundaryGroup::lies_within(const BoundaryGroup& other) const {
   if (!impl_->bounds.overlaps(other.impl_->bounds)) return false;
   bool inside = false;

@@ -6,6 +6,7 @@
 #include <stdexcept>
 
 #include "core/math/spread.h"
+#include "core/scene/contact.h"
 #include "core/scene/covered_border.h"
 
 namespace fogbow {
@@ -21,9 +22,12 @@ bool is_flawed(const BoundaryGroup& boundary) {
   });
 }
 
-/// Whether two volumes run through each other and not both can be as they are.
-bool dispute(const EnclosedVolume& a, const EnclosedVolume& b) {
-  return a.disputes(b) && (a.boundary->crosses(*b.boundary) || b.boundary->crosses(*a.boundary));
+bool cross(const EnclosedVolume& a, const EnclosedVolume& b) {
+  return a.boundary->crosses(*b.boundary) || b.boundary->crosses(*a.boundary);
+}
+
+bool touch(const EnclosedVolume& a, const EnclosedVolume& b, double distance) {
+  return a.boundary->touches(*b.boundary, distance) || b.boundary->touches(*a.boundary, distance);
 }
 
 }  // namespace
@@ -39,7 +43,8 @@ std::string describe(const Medium* medium) {
   return medium->id().empty() ? "an unnamed medium" : "medium '" + medium->id() + "'";
 }
 
-Scene::BoundaryReport::BoundaryReport(std::vector<Surface>& surfaces) : surfaces_(surfaces) {
+Scene::BoundaryReport::BoundaryReport(std::vector<Surface>& surfaces)
+    : surfaces_(surfaces), touch_(touch_distance(surfaces)) {
   group_surfaces();
   list_volumes();
   list_pairs();
@@ -116,6 +121,11 @@ EnclosedVolume Scene::BoundaryReport::volume_of(const Group& group,
   return volume;
 }
 
+/// Whether two volumes run through each other, or share a face, and not both can be as they are.
+bool Scene::BoundaryReport::dispute(const EnclosedVolume& a, const EnclosedVolume& b) const {
+  return a.disputes(b) && (cross(a, b) || touch(a, b, touch_));
+}
+
 void Scene::BoundaryReport::list_pairs() {
   for (std::size_t a = 0; a < volumes_.size(); ++a) {
     EnclosedVolume& v = volumes_[a];
@@ -126,16 +136,19 @@ void Scene::BoundaryReport::list_pairs() {
   }
 }
 
-/// Whether glass that says nothing of media runs through the boundary of another volume, or has, as
-/// other such glass around it, a priority.
+/// Whether glass that says nothing of media runs through the boundary of another volume or lies
+/// upon it, or has, as other such glass around it, a priority.
 bool Scene::BoundaryReport::may_dispute(const Surface& glass) const {
   const Bounds bounds = glass.shape->bounds();
   for (const EnclosedVolume& v : volumes_) {
     if (v.n == 0 || !v.sets_medium) continue;
-    int inside = 0;
-    for (int i = 0; i < kPointsOfGlass; ++i)
-      inside += v.boundary->contains(glass.shape->sample(spread_point(i, kPointsOfGlass)).position);
-    if (inside > 0 && inside < kPointsOfGlass) return true;
+    std::array<int, 3> points{};  // by how many of their sides are inside
+    for (int i = 0; i < kPointsOfGlass; ++i) {
+      const SurfacePoint x = glass.shape->sample(spread_point(i, kPointsOfGlass));
+      ++points[v.boundary->contains(x.position + touch_ * x.n_g) +
+               v.boundary->contains(x.position - touch_ * x.n_g)];
+    }
+    if (points[1] > 0 || (points[0] > 0 && points[2] > 0)) return true;
   }
   return std::ranges::any_of(surfaces_, [&](const Surface& s) {
     return &s != &glass && refracts(s) && !s.medium_boundary &&
@@ -199,7 +212,8 @@ std::string Scene::BoundaryReport::overlap_text(std::size_t a, std::size_t b) co
            (v.sets_medium ? describe(v.interior.get()) : "an index of refraction");
   };
   if (a == b) return "pieces of " + held(volumes_[a]) + ", overlap";
-  return held(volumes_[b]) + ", overlaps " + held(volumes_[a]);
+  const bool crossing = cross(volumes_[a], volumes_[b]);
+  return held(volumes_[b]) + (crossing ? ", overlaps " : ", touches ") + held(volumes_[a]);
 }
 
 void Scene::BoundaryReport::resolve() {
@@ -207,6 +221,7 @@ void Scene::BoundaryReport::resolve() {
   try {
     auto overlaps = std::make_unique<const Overlaps>(surfaces_, volumes_, pairs_);
     for (const auto& [a, b] : pairs_) {
+      if (a != b && !cross(volumes_[a], volumes_[b])) continue;  // nothing has to give way
       const auto& [high, low] = overlaps->outranks(a, b) ? std::pair(a, b) : std::pair(b, a);
       notes_.push_back(
           overlap_text(a, b) +

@@ -37,6 +37,7 @@ struct Scene::BoundaryReport {
   std::vector<EnclosedVolume> volumes_of(const Group& group) const;
   EnclosedVolume volume_of(const Group& group, std::vector<std::uint32_t> members) const;
   std::shared_ptr<const BoundaryGroup> join(const std::vector<std::uint32_t>& members) const;
+  bool dispute(const EnclosedVolume& a, const EnclosedVolume& b) const;
   void list_pairs();
   void add_glass();
   void add_glass_volume(const std::vector<std::uint32_t>& members,
@@ -49,6 +50,7 @@ struct Scene::BoundaryReport {
   void warn_of_defects(const Accel& accel, std::vector<std::string>& messages) const;
 
   std::vector<Surface>& surfaces_;
+  double touch_;  ///< distance over which surfaces touch
   std::vector<Group> groups_;
   std::vector<EnclosedVolume> volumes_;
   OverlappingPairs pairs_;

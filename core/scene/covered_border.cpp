@@ -3,6 +3,8 @@
 
 #include <algorithm>
 
+#include "core/scene/contact.h"
+
 namespace fogbow {
 
 namespace {
@@ -16,17 +18,13 @@ constexpr double kBehind = 0.05;
 constexpr double kAside = 1e-4;
 constexpr std::array kPlaces{1.0 / 6, 0.5, 5.0 / 6};
 
-bool is_opaque(const Bsdf& bsdf) {
-  return !bsdf.has_passage() && bsdf.eta() == 1 && !bsdf.between(1.5, 1);
-}
-
 /// Whether a wall stands between p and q.
 bool is_walled(const Vec3& p, const Vec3& q, const std::vector<Surface>& surfaces,
                const Accel& accel) {
   Ray ray{p, normalize(q - p), 0, length(q - p)};
   PrimitiveId from = kNoPrimitive;
   while (const auto hit = accel.intersect(ray, from)) {
-    if (is_opaque(*surfaces[hit->id.shape].bsdf)) return true;
+    if (is_opaque(surfaces[hit->id.shape])) return true;
     ray.t_min = hit->t;
     from = hit->id;
   }

@@ -8,6 +8,7 @@
 #include "core/geometry/trimmed.h"
 #include "core/math/spread.h"
 #include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/contact.h"
 #include "core/util/check.h"
 
 namespace fogbow {
@@ -79,7 +80,8 @@ struct Overlaps::Volume : EnclosedVolume {
 };
 
 Overlaps::Overlaps(std::vector<Surface>& surfaces, std::vector<EnclosedVolume> volumes,
-                   const OverlappingPairs& pairs) {
+                   const OverlappingPairs& pairs)
+    : touch_(touch_distance(surfaces)) {
   for (std::uint32_t i = 0; i < surfaces.size(); ++i) {
     whole_.push_back(surfaces[i].shape);
     refracting_.push_back(refracts(surfaces[i]));
@@ -247,7 +249,10 @@ void Overlaps::take_part(std::vector<Surface>& surfaces, std::uint32_t surface) 
   if (!refracting_[surface]) part.outside.n = 1;
   add_variants(surfaces, surface, part);
   const bool hides =
-      std::ranges::any_of(part.variants, [](const Variant& v) { return v.name == kHidden; });
+      !part.variants.empty() &&
+      (std::ranges::any_of(part.variants, [](const Variant& v) { return v.name == kHidden; }) ||
+       std::ranges::any_of(part.around,
+                           [&](std::size_t v) { return volumes_[part.own].meets[v]; }));
   if (!hides) return;
   shapes_[surface] =
       make_trimmed(whole_[surface], [this, surface](std::uint32_t primitive, const Vec2& local) {
@@ -308,26 +313,33 @@ std::shared_ptr<const Bsdf> Overlaps::bsdf_between(const Surface& surface, const
 
 // --- Hits
 
+Overlaps::Mask Overlaps::inside(const Part& part, const Vec3& p, const Vec3& way) const {
+  Mask mask = 0;
+  for (std::size_t i = 0; i < part.around.size(); ++i)
+    if (volumes_[part.around[i]].winding(p, way) > 0) mask |= Mask{1} << i;
+  return mask;
+}
+
+/// Whether one of the boundaries that lie upon a place is there instead: of those that refract, or
+/// of all if none does, that of the highest rank stays.
+bool Overlaps::replaced(const Part& part, Mask flips) const {
+  const Volume& own = volumes_[part.own];
+  for (std::size_t i = 0; i < part.around.size(); ++i) {
+    const std::size_t other = part.around[i];
+    if (!(flips >> i & 1) || !own.meets[other] || other == part.own) continue;
+    const bool refracts = volumes_[other].n != 0, own_refracts = own.n != 0;
+    if (refracts != own_refracts ? refracts : rank_[other] < rank_[part.own]) return true;
+  }
+  return false;
+}
+
 std::uint32_t Overlaps::find(std::uint32_t surface, const SurfacePoint& x) const {
   const Part& part = parts_[surface];
-  Mask inside = 0, outside = 0;
-  const Vec3 out = way_off(x.n_g), in = way_off(-x.n_g);
-  for (std::size_t i = 0; i < part.around.size(); ++i) {
-    const Volume& volume = volumes_[part.around[i]];
-    const Mask bit = Mask{1} << i;
-    if (part.around[i] == part.own) {
-      inside |= bit;
-      if (volume.meets_itself &&
-          volume.winding(x.position, out, volume.own(surface, x.primitive)) > 0)
-        outside |= bit;
-      continue;
-    }
-    if (volume.winding(x.position, in) > 0) inside |= bit;
-    if (volume.winding(x.position, out) > 0) outside |= bit;
-  }
+  const Mask in = inside(part, x.position - touch_ * x.n_g, way_off(-x.n_g)),
+             out = inside(part, x.position + touch_ * x.n_g, way_off(x.n_g));
+  if (replaced(part, in ^ out)) return kHidden;
   const bool refracting = refracting_[surface];
-  const Place interior = place(part, inside, refracting),
-              exterior = place(part, outside, refracting);
+  const Place interior = place(part, in, refracting), exterior = place(part, out, refracting);
   for (const Variant& v : part.variants)
     if (v.interior == interior && v.exterior == exterior) return v.name;
   FOGBOW_CHECK(false && "a place on a surface was not foreseen");

@@ -11,7 +11,8 @@ using OverlappingPairs = std::vector<std::pair<std::size_t, std::size_t>>;
 
 /// Decides what medium and what index of refraction lie on each side of a surface where volumes
 /// overlap, by the priorities of [SchmidtBudge2002]: a function of the place alone, whatever way
-/// light takes. A boundary with one and the same on both sides is not there.
+/// light takes. A boundary with one and the same on both sides is not there; of those that lie upon
+/// each other one is.
 class Overlaps final : public HitNames {
  public:
   /// Appends to `surfaces` those that some of them are where volumes overlap. Throws
@@ -64,8 +65,11 @@ class Overlaps final : public HitNames {
                                            const Place& exterior);
   Place place(const Part& part, Mask inside, bool refracting) const;
   Place outside(const Surface& surface, std::size_t own) const;
+  Mask inside(const Part& part, const Vec3& p, const Vec3& way) const;
+  bool replaced(const Part& part, Mask flips) const;
   std::uint32_t find(std::uint32_t surface, const SurfacePoint& x) const;
 
+  double touch_;  ///< distance over which surfaces touch
   std::vector<Volume> volumes_;
   std::vector<std::size_t> rank_;  ///< of each volume, 0 the highest
   std::vector<std::shared_ptr<const Medium>> media_;

@@ -7,6 +7,7 @@
 
 #include "core/math/spread.h"
 #include "core/scene/boundary_report.h"
+#include "core/scene/contact.h"
 #include "core/scene/emitters.h"
 #include "core/util/log.h"
 
@@ -38,15 +39,16 @@ struct Scene::Sighting {
 Scene::Scene(SceneDescription description, bool strict) : description_(std::move(description)) {
   check_description();
   declared_surfaces_ = surfaces().size();
+  touch_ = touch_distance(surfaces());
   BoundaryReport report(description_.surfaces);
   overlaps_ = std::move(report.overlaps());
+  overlap_notes_ = report.notes();
   build_accels();
   list_media();
   measure();
   place_anchors();
   for (std::string& message : report.warnings(*accel_)) warn(std::move(message));
-  for (const std::string& note : report.notes()) log_info(note);
-  overlap_notes_ = report.notes();
+  for (const std::string& note : overlap_notes_) log_info(note);
   check_camera(report);
   check_point_lights(report);
   collect_emitters(report);
@@ -57,11 +59,16 @@ Scene::Scene(SceneDescription description, bool strict) : description_(std::move
 Scene::~Scene() = default;
 
 void Scene::build_accels() {
+  std::vector<std::shared_ptr<const Shape>> whole;
+  for (std::uint32_t i = 0; i < declared_surfaces_; ++i)
+    whole.push_back(overlaps_ ? overlaps_->shape_of(i) : surface(i).shape);
+  const Contacts contacts(surfaces(), whole);
+  met_shapes_ = contacts.free_parts();
+  for (const std::uint32_t i : contacts.covered())
+    overlap_notes_.push_back(describe(surface(i)) +
+                             " touches what is opaque: there light meets only that");
   std::vector<const Shape*> shapes, boundaries;
-  const auto shape_of = [&](std::uint32_t i) {
-    return (overlaps_ ? overlaps_->shape_of(i) : surface(i).shape).get();
-  };
-  for (std::uint32_t i = 0; i < declared_surfaces_; ++i) shapes.push_back(shape_of(i));
+  for (const auto& shape : met_shapes_) shapes.push_back(shape.get());
   for (std::uint32_t i = 0; i < surfaces().size(); ++i) {
     has_null_surfaces_ |= surface(i).bsdf->has_passage();
     const std::uint32_t declared = overlaps_ ? overlaps_->shape(i) : i;
@@ -71,7 +78,7 @@ void Scene::build_accels() {
     boundary_shapes_.push_back(declared);
   }
   std::ranges::sort(boundary_shapes_);
-  for (const std::uint32_t i : boundary_shapes_) boundaries.push_back(shape_of(i));
+  for (const std::uint32_t i : boundary_shapes_) boundaries.push_back(whole[i].get());
   accel_ = std::make_unique<Accel>(shapes, overlaps_.get());
   boundary_accel_ = std::make_unique<Accel>(boundaries);
 }
@@ -130,7 +137,9 @@ std::optional<Scene::Sighting> Scene::look(const Vec3& p, const Vec3& target,
   PrimitiveId from = kNoPrimitive;
   if (place != boundary_shapes_.end() && *place == own)
     from = {static_cast<std::uint32_t>(place - boundary_shapes_.begin()), on.primitive};
-  const Ray ray{p, (target - p) / distance, 0, kInfinity};
+  // What touches the surface that p lies on is on its other side.
+  const double start = on == kNoPrimitive ? 0 : 2 * touch_;
+  const Ray ray{p, (target - p) / distance, start, kInfinity};
   const auto hit = boundary_accel_->intersect(ray, from);
   if (!hit) return std::nullopt;
   PrimitiveId id{boundary_shapes_[hit->id.shape], hit->id.primitive};

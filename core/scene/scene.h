@@ -111,7 +111,7 @@ class Scene {
   double radius() const { return radius_; }
   /// What the load-time checks found, one line each with shape and place.
   const std::vector<std::string>& warnings() const { return warnings_; }
-  /// What holds where volumes overlap, one line each.
+  /// What holds where volumes overlap, or lie upon something opaque, one line each.
   const std::vector<std::string>& overlap_notes() const { return overlap_notes_; }
 
  private:
@@ -140,6 +140,9 @@ class Scene {
   std::vector<std::shared_ptr<const Medium>> media_;
   std::size_t declared_surfaces_ = 0;
   std::unique_ptr<const Overlaps> overlaps_;
+  /// What rays meet of each surface of the description.
+  std::vector<std::shared_ptr<const Shape>> met_shapes_;
+  double touch_ = 0;  ///< distance over which surfaces touch
   std::unique_ptr<Accel> accel_;
   std::unique_ptr<Accel> boundary_accel_;       ///< of the medium boundaries alone
   std::vector<std::uint32_t> boundary_shapes_;  ///< ids in accel_ of boundary_accel_'s shapes
