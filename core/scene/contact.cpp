@@ -27,6 +27,15 @@ bool is_opaque(const Surface& surface) {
   return !bsdf.has_passage() && bsdf.eta() == 1 && !bsdf.between(1.5, 1);
 }
 
+/// What is met of two surfaces at one place: that of the higher rank. Nothing for what both shines
+/// and lets light through: it stays.
+enum class Contacts::Rank { Transparent, Opaque, Lamp };
+std::optional<Contacts::Rank> Contacts::rank(const Surface& surface) {
+  if (is_opaque(surface)) return surface.emitter ? Rank::Lamp : Rank::Opaque;
+  if (surface.emitter) return std::nullopt;
+  return Rank::Transparent;
+}
+
 double touch_distance(const std::vector<Surface>& surfaces) {
   double largest = 0;
   for (const Surface& s : surfaces) {
@@ -82,25 +91,31 @@ class Contacts::Cover {
 
 Contacts::Contacts(const std::vector<Surface>& surfaces, const std::vector<ShapePointer>& met)
     : free_parts_(met), touch_(touch_distance(surfaces)) {
-  Bounds of_opaque;
-  std::vector<ShapePointer> opaque;
-  for (std::uint32_t i = 0; i < met.size(); ++i) {
-    if (!is_opaque(surfaces[i])) continue;
-    opaque.push_back(met[i]);
-    of_opaque.extend(met[i]->bounds());
+  std::vector<std::optional<Rank>> ranks;
+  for (std::size_t i = 0; i < met.size(); ++i) ranks.push_back(rank(surfaces[i]));
+  for (const Rank lower : {Rank::Transparent, Rank::Opaque}) trim_all(ranks, lower);
+}
+
+void Contacts::trim_all(const std::vector<std::optional<Rank>>& ranks, Rank lower) {
+  std::vector<ShapePointer> higher;
+  Bounds bounds;
+  for (std::size_t i = 0; i < ranks.size(); ++i) {
+    if (!ranks[i] || *ranks[i] <= lower) continue;
+    higher.push_back(free_parts_[i]);
+    bounds.extend(free_parts_[i]->bounds());
   }
-  if (!(of_opaque.radius() > kLeast)) return;
+  if (!(bounds.radius() > kLeast)) return;
   std::shared_ptr<const Cover> cover;  // made when it is wanted
-  for (std::uint32_t i = 0; i < met.size(); ++i) {
-    const Bounds b = met[i]->bounds();
-    if (is_opaque(surfaces[i]) || !(b.radius() > kLeast)) continue;
+  for (std::uint32_t i = 0; i < ranks.size(); ++i) {
+    const Bounds b = free_parts_[i]->bounds();
+    if (ranks[i] != lower || !(b.radius() > kLeast)) continue;
     std::vector<ShapePointer> near;
-    std::ranges::copy_if(opaque, std::back_inserter(near), [&](const ShapePointer& other) {
+    std::ranges::copy_if(higher, std::back_inserter(near), [&](const ShapePointer& other) {
       return Bounds{b.lo - touch_, b.hi + touch_}.overlaps(other->bounds());
     });
     if (near.empty()) continue;
-    if (!cover) cover = std::make_shared<const Cover>(opaque, touch_);
-    if (touches(*cover, met[i], near)) trim(i, cover);
+    if (!cover) cover = std::make_shared<const Cover>(higher, touch_);
+    if (touches(*cover, free_parts_[i], near)) trim(i, cover);
   }
 }
 

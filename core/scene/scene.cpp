@@ -66,7 +66,7 @@ void Scene::build_accels() {
   met_shapes_ = contacts.free_parts();
   for (const std::uint32_t i : contacts.covered())
     overlap_notes_.push_back(describe(surface(i)) +
-                             " touches what is opaque: there light meets only that");
+                             " touches what is opaque or shines: there light meets only that");
   std::vector<const Shape*> shapes, boundaries;
   for (const auto& shape : met_shapes_) shapes.push_back(shape.get());
   for (std::uint32_t i = 0; i < surfaces().size(); ++i) {

@@ -110,6 +110,32 @@ TEST_P(Contact, LampsFlushWithFogShineIntoIt) {
   EXPECT_EQ(scene.medium_around_emitter(0, x.position, {5, x.primitive}), haze.get());
 }
 
+/// A lamp as high as the ceiling is seen where it is, and so is light that comes back to it.
+TEST_P(Contact, LampsFlushWithWallsAreSeen) {
+  std::vector<Surface> surfaces = room();
+  const Transform ceiling = place_ * Transform::translate({0.2, 1, 0.1}) *
+                            Transform::rotate({1, 0, 0}, 90) * Transform::scale({0.3, 0.2, 1});
+  Surface lamp = surface(make_rectangle(ceiling), make_diffuse(RGB(0)));
+  lamp.emitter = make_area_emitter(lamp.shape, RGB(1));
+  surfaces.push_back(lamp);
+  const Scene scene(describe_scene(std::move(surfaces), world({0.3, 0.2, 0.9})));
+  Rng rng(suite_seed(), RngDomain::Test, 55, 0);
+  int seen = 0;
+  for (int i = 0; i < kRays; ++i) {
+    Vec3 p = inside(rng), q = inside(rng);
+    q.y = 1;
+    Vertex x;
+    Edge edge;
+    ASSERT_EQ(extend_to_surface(scene, point_at(world(p)), normalize(world(q) - world(p)), x, edge),
+              ExtendResult::Reached);
+    ASSERT_NEAR(edge.length, unit() * length(q - p), 1e-6);
+    const bool at_lamp = std::abs(q.x - 0.2) < 0.3 && std::abs(q.z - 0.1) < 0.2;
+    ASSERT_EQ(scene.emitter_of_surface(x.id.shape) >= 0, at_lamp) << q.x << ", " << q.z;
+    seen += at_lamp;
+  }
+  EXPECT_GT(seen, kRays / 50);
+}
+
 /// Glass on a floor: from within, down is the floor, everywhere.
 TEST_P(Contact, FloorsAreSeenFromWithinTheGlassOnThem) {
   const auto glass = make_dielectric(1.5);
