@@ -49,7 +49,7 @@ def overrides_of(integrator, twin):
     """Chains that share their time as the light is shared know means best. Few starts will do where both sides have the same."""
     overrides = OVERRIDES.get(integrator, {})
     if integrator == "mlt" and not twin:
-        overrides = overrides | {"luminance_samples": "32768"}
+        overrides = overrides | {"luminance_samples": "16384"}
     return overrides | {"two_stage": "false"} if overrides else {}
 
 

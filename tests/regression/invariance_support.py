@@ -10,7 +10,7 @@ import transform_scene
 
 INTEGRATORS = ("path", "light", "bdpt", "pssmlt", "mlt")
 # Scenes of 256 pixels need no more chains.
-OVERRIDES = {"pssmlt": {"luminance_samples": "2048", "chains": "2"}, "mlt": {"luminance_samples": "2048", "chains": "4"}}
+OVERRIDES = {"pssmlt": {"luminance_samples": "2048", "chains": "2"}, "mlt": {"luminance_samples": "8192", "chains": "4"}}
 
 
 class SceneFolder:
