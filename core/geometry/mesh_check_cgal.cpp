@@ -312,7 +312,8 @@ bool BoundaryGroup::crosses(const BoundaryGroup& other) const {
 }
 
 bool BoundaryGroup::touches(const BoundaryGroup& other, double distance) const {
-  if (!impl_->bounds.overlaps(other.impl_->bounds)) return false;
+  const Bounds reach{impl_->bounds.lo - distance, impl_->bounds.hi + distance};
+  if (!reach.overlaps(other.impl_->bounds)) return false;
   return std::ranges::any_of(impl_->both_sides, [&](const auto& sides) {
     const Vec3 x = 0.5 * (sides[0] + sides[1]), n = normalize(sides[0] - sides[1]);
     return other.contains(x + distance * n) != other.contains(x - distance * n);

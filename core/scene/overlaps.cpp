@@ -32,6 +32,8 @@ bool is_null(const Bsdf& bsdf) {
   return bsdf.has_passage() && !bsdf.has_smooth() && !bsdf.has_dirac();
 }
 
+Bounds widened(const Bounds& b, double by) { return {b.lo - by, b.hi + by}; }
+
 Bounds common(const Bounds& a, const Bounds& b) {
   return {glm::max(a.lo, b.lo), glm::min(a.hi, b.hi)};
 }
@@ -105,7 +107,8 @@ Overlaps::Overlaps(std::vector<Surface>& surfaces, std::vector<EnclosedVolume> v
     for (const std::uint32_t i : volumes_[v].surfaces) {
       parts_[i].own = v;
       const bool near = std::ranges::any_of(pairs, [&](const auto& pair) {
-        const Bounds zone = common(volumes_[pair.first].bounds, volumes_[pair.second].bounds);
+        const Bounds zone = common(widened(volumes_[pair.first].bounds, touch_),
+                                   widened(volumes_[pair.second].bounds, touch_));
         return zone.overlaps(whole_[i]->bounds());
       });
       if (volumes_[v].overlaps || near) taking_part.push_back(i);
@@ -238,8 +241,8 @@ Overlaps::Place Overlaps::outside(const Surface& surface, std::size_t own) const
 void Overlaps::take_part(std::vector<Surface>& surfaces, std::uint32_t surface) {
   Part& part = parts_[surface];
   for (std::size_t v = 0; v < volumes_.size(); ++v)
-    if (v == part.own ||
-        (volumes_[v].obstacle.empty() && volumes_[v].bounds.overlaps(whole_[surface]->bounds())))
+    if (v == part.own || (volumes_[v].obstacle.empty() &&
+                          widened(volumes_[v].bounds, touch_).overlaps(whole_[surface]->bounds())))
       part.around.push_back(v);
   if (part.around.size() > kMostAround)
     throw std::domain_error("more than " + std::to_string(kMostAround) + " volumes are around " +

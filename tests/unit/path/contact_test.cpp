@@ -42,6 +42,9 @@ class Contact : public ::testing::TestWithParam<bool> {
     return walls;
   }
 
+  void expect_one_interface(const Scene& scene, const Medium* below, const Medium* above, bool up,
+                            Rng& rng) const;
+
   Transform place_;
 };
 INSTANTIATE_TEST_SUITE_P(Turned, Contact, ::testing::Bool());
@@ -208,39 +211,44 @@ TEST_P(Contact, VolumesThatShareAFaceFillTheirSides) {
   EXPECT_LT(worst, 1e-6);
 }
 
-/// Glass on glass, of which one may name no media: one interface between the two, whichever way
-/// light comes.
+/// Between n = 1.5 below z = 0 and 1.2 above it.
+void Contact::expect_one_interface(const Scene& scene, const Medium* below, const Medium* above,
+                                   bool up, Rng& rng) const {
+  Vec3 p = inside(rng), q = inside(rng);
+  p.z = up ? -1 : 1;
+  q.z = 0;
+  Vertex x, y;
+  Edge edge;
+  const Vec3 w = normalize(world(q) - world(p));
+  ASSERT_EQ(extend_to_surface(scene, point_at(world(p), up ? below : above), w, x, edge),
+            ExtendResult::Reached);
+  ASSERT_NEAR(edge.length, unit() * length(q - p), 1e-5);
+  const bool outwards = dot(w, x.point.n_g) > 0;
+  ASSERT_NEAR(std::log(scene.surface(x.id.shape).bsdf->eta()),
+              std::log(up == outwards ? 1.5 / 1.2 : 1.2 / 1.5), 1e-12);
+  ASSERT_EQ(medium_toward(scene, x, w), up ? above : below);
+  ASSERT_EQ(extend_to_surface(scene, x, w, y, edge), ExtendResult::Reached);
+  ASSERT_GT(edge.length, 1e-3 * unit());  // to another side, not to a second face here
+}
+
+/// Glass on glass, of which one may name no media, and where files round a little apart or a little
+/// into it: one interface between the two, whichever way light comes.
 TEST_P(Contact, GlassOnGlassRefractsOnce) {
   const MediumPointer a = fog(RGB(0.1), "a"), named = fog(RGB(0.2), "b");
-  for (const MediumPointer& b : {named, MediumPointer()}) {
-    const auto above = make_cube(place_ * Transform::translate({0, 0, 1}));
-    const auto glass = make_dielectric(1.2);
-    const Scene scene(
-        describe_scene({boundary(make_cube(place_ * Transform::translate({0, 0, -1})), a, nullptr,
-                                 0, make_dielectric(1.5)),
-                        b ? boundary(above, b, nullptr, 0, glass) : surface(above, glass)},
-                       world({0.3, 0.2, 9})));
-    Rng rng(suite_seed(), RngDomain::Test, 54, 0);
-    for (int i = 0; i < kRays; ++i) {
-      const bool up = i % 2 == 0;
-      Vec3 p = inside(rng), q = inside(rng);
-      p.z = up ? -1 : 1;
-      q.z = 0;
-      Vertex x, y;
-      Edge edge;
-      const Vec3 w = normalize(world(q) - world(p));
-      ASSERT_EQ(extend_to_surface(scene, point_at(world(p), (up ? a : b).get()), w, x, edge),
-                ExtendResult::Reached);
-      ASSERT_NEAR(edge.length, unit() * length(q - p), 1e-6);
-      const Surface& surface = scene.surface(x.id.shape);
-      const bool outwards = dot(w, x.point.n_g) > 0;
-      ASSERT_NEAR(std::log(surface.bsdf->eta()), std::log(up == outwards ? 1.5 / 1.2 : 1.2 / 1.5),
-                  1e-12);
-      ASSERT_EQ(medium_toward(scene, x, w), (up ? b : a).get());
-      ASSERT_EQ(extend_to_surface(scene, x, w, y, edge), ExtendResult::Reached);
-      ASSERT_GT(edge.length, 1e-3 * unit());  // to another side, not to a second face here
+  for (const MediumPointer& b : {named, MediumPointer()})
+    for (const double apart : {0.0, 1e-7, -1e-7}) {
+      const auto above = make_cube(place_ * Transform::translate({0, 0, 1 + apart}));
+      const auto glass = make_dielectric(1.2);
+      const Scene scene(
+          describe_scene({boundary(make_cube(place_ * Transform::translate({0, 0, -1})), a, nullptr,
+                                   0, make_dielectric(1.5)),
+                          b ? boundary(above, b, nullptr, 0, glass) : surface(above, glass)},
+                         world({0.3, 0.2, 9})));
+      SCOPED_TRACE(apart);
+      Rng rng(suite_seed(), RngDomain::Test, 54, 0);
+      for (int i = 0; i < kRays; ++i)
+        expect_one_interface(scene, a.get(), b.get(), i % 2 == 0, rng);
     }
-  }
 }
 
 TEST_P(Contact, SurfacesApartAreLeftAlone) {
