@@ -120,6 +120,23 @@ double uniform_ks_test(std::vector<double> samples) {
   return kolmogorov_tail((std::sqrt(n) + 0.12 + 0.11 / std::sqrt(n)) * distance);
 }
 
+double two_sample_ks_test(std::vector<double> a, std::vector<double> b) {
+  if (a.empty() || b.empty()) throw std::invalid_argument("two_sample_ks_test: no samples");
+  std::sort(a.begin(), a.end());
+  std::sort(b.begin(), b.end());
+  const double n = static_cast<double>(a.size()), m = static_cast<double>(b.size());
+  double distance = 0;
+  for (std::size_t i = 0, j = 0; i < a.size() && j < b.size();) {
+    const double x = std::min(a[i], b[j]);  // ties move both
+    while (i < a.size() && a[i] == x) ++i;
+    while (j < b.size() && b[j] == x) ++j;
+    distance =
+        std::max(distance, std::fabs(static_cast<double>(i) / n - static_cast<double>(j) / m));
+  }
+  const double root = std::sqrt(n * m / (n + m));
+  return kolmogorov_tail((root + 0.12 + 0.11 / root) * distance);
+}
+
 Estimate estimate(std::span<const double> replicates) {
   if (replicates.size() < 2) throw std::invalid_argument("estimate: needs two replicates");
   const double n = static_cast<double>(replicates.size());

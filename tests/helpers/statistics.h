@@ -24,6 +24,8 @@ double p_value_chi2(double x, double degrees_of_freedom);
 double chi2_test(std::span<const std::uint64_t> observed, std::span<const double> expected);
 /// Kolmogorov–Smirnov p-value of samples against the uniform law on [0, 1].
 double uniform_ks_test(std::vector<double> samples);
+/// Of two samples against each other.
+double two_sample_ks_test(std::vector<double> a, std::vector<double> b);
 
 /// Mean and standard error of independent replicates.
 struct Estimate {

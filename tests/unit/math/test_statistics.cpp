@@ -35,7 +35,7 @@ TEST(Statistics, PValuesOfTrueHypothesesAreUniform) {
   std::mt19937_64 engine(suite_seed());
   std::normal_distribution<double> normal;
   std::uniform_real_distribution<double> uniform;
-  std::vector<double> ks, t, cells;
+  std::vector<double> ks, two, t, cells;
   for (int trial = 0; trial < 2000; ++trial) {
     std::vector<double> u(400), a(6), b(9);
     for (double& x : u) x = uniform(engine);
@@ -44,11 +44,13 @@ TEST(Statistics, PValuesOfTrueHypothesesAreUniform) {
     std::vector<std::uint64_t> counts(20, 0);
     for (const double x : u) ++counts[static_cast<std::size_t>(x * 20)];
     ks.push_back(uniform_ks_test(u));
+    two.push_back(two_sample_ks_test({u.begin(), u.begin() + u.size() / 3},
+                                     {u.begin() + u.size() / 3, u.end()}));
     t.push_back(compare(estimate(a), 3));
     cells.push_back(chi2_test(counts, std::vector<double>(20, 20.0)));
   }
-  for (const auto& p : {ks, t, cells}) {
-    EXPECT_GT(uniform_ks_test(p), sidak(kSuiteFalseAlarm, 3) * 0.1);
+  for (const auto& p : {ks, two, t, cells}) {
+    EXPECT_GT(uniform_ks_test(p), sidak(kSuiteFalseAlarm, 4) * 0.1);
   }
 }
 
@@ -66,6 +68,18 @@ TEST(Statistics, KolmogorovSmirnov) {
               0.05);
   exact[0] = 1.5;
   EXPECT_EQ(uniform_ks_test(exact), 0) << "outside of the unit interval";
+}
+
+TEST(Statistics, KolmogorovSmirnovOfTwoSamples) {
+  // D = 3/4 − 1/6 at x = 2, of 4 and 6 values.
+  const double root = std::sqrt(2.4), lambda = (root + 0.12 + 0.11 / root) * 7 / 12;
+  double tail = 0;
+  for (int k = 1; k < 50; ++k)
+    tail += 2 * (k % 2 ? 1 : -1) * std::exp(-2.0 * k * k * lambda * lambda);
+  EXPECT_NEAR(two_sample_ks_test({2, 1, 2, 5}, {5, 2, 3, 6, 4, 7}), tail, 1e-12);
+  const std::vector<double> same(100, 0.5);
+  EXPECT_GT(two_sample_ks_test(same, same), 0.999) << "ties are no difference";
+  EXPECT_LT(two_sample_ks_test(same, std::vector<double>(100, 0.6)), 1e-20);
 }
 
 TEST(Statistics, WelchAndPower) {
