@@ -59,12 +59,6 @@ struct Overlaps::Volume : EnclosedVolume {
     accel = std::make_unique<Accel>(shapes);
   }
 
-  /// The primitive in `accel` of one in the scene.
-  PrimitiveId own(std::uint32_t surface, std::uint32_t primitive) const {
-    const auto place = std::ranges::find(surfaces, surface);
-    return {static_cast<std::uint32_t>(place - surfaces.begin()), primitive};
-  }
-
   /// How often the boundary winds around the beginning of a ray.
   int winding(const Vec3& p, const Vec3& d, PrimitiveId from = kNoPrimitive) const {
     for (int i = 0; i < 3; ++i)
@@ -316,10 +310,18 @@ std::shared_ptr<const Bsdf> Overlaps::bsdf_between(const Surface& surface, const
 
 // --- Hits
 
-Overlaps::Mask Overlaps::inside(const Part& part, const Vec3& p, const Vec3& way) const {
+/// The volumes on one side of a surface, close to x. That its own is on the inner side, and on the
+/// outer one only where its pieces overlap, needs no ray, and holds at sharp edges, too.
+Overlaps::Mask Overlaps::beside(const Part& part, const SurfacePoint& x, bool interior) const {
+  const Vec3 n = interior ? -x.n_g : x.n_g, p = x.position + touch_ * n, way = way_off(n);
   Mask mask = 0;
-  for (std::size_t i = 0; i < part.around.size(); ++i)
-    if (volumes_[part.around[i]].winding(p, way) > 0) mask |= Mask{1} << i;
+  for (std::size_t i = 0; i < part.around.size(); ++i) {
+    const Volume& volume = volumes_[part.around[i]];
+    const bool own = part.around[i] == part.own;
+    const bool holds =
+        own && (interior || !volume.meets_itself) ? interior : volume.winding(p, way) > 0;
+    if (holds) mask |= Mask{1} << i;
+  }
   return mask;
 }
 
@@ -338,8 +340,7 @@ bool Overlaps::replaced(const Part& part, Mask flips) const {
 
 std::uint32_t Overlaps::find(std::uint32_t surface, const SurfacePoint& x) const {
   const Part& part = parts_[surface];
-  const Mask in = inside(part, x.position - touch_ * x.n_g, way_off(-x.n_g)),
-             out = inside(part, x.position + touch_ * x.n_g, way_off(x.n_g));
+  const Mask in = beside(part, x, true), out = beside(part, x, false);
   if (replaced(part, in ^ out)) return kHidden;
   const bool refracting = refracting_[surface];
   const Place interior = place(part, in, refracting), exterior = place(part, out, refracting);

@@ -65,7 +65,7 @@ class Overlaps final : public HitNames {
                                            const Place& exterior);
   Place place(const Part& part, Mask inside, bool refracting) const;
   Place outside(const Surface& surface, std::size_t own) const;
-  Mask inside(const Part& part, const Vec3& p, const Vec3& way) const;
+  Mask beside(const Part& part, const SurfacePoint& x, bool interior) const;
   bool replaced(const Part& part, Mask flips) const;
   std::uint32_t find(std::uint32_t surface, const SurfacePoint& x) const;
 

@@ -211,6 +211,29 @@ TEST_P(Contact, VolumesThatShareAFaceFillTheirSides) {
   EXPECT_LT(worst, 1e-6);
 }
 
+/// Nearer to an edge than surfaces touch a wedge is thinner than that.
+TEST_P(Contact, WedgesThatShareAFaceHoldAtTheirEdge) {
+  TriangleMeshData wedge;
+  for (const double y : {-1.0, 1.0})
+    for (const Vec2& xz : {Vec2(0, 0), Vec2(2, 0), Vec2(2, 0.2)})
+      wedge.positions.push_back(world({xz.x, y, xz.y}));
+  wedge.triangles = {{0, 1, 2}, {3, 5, 4}, {0, 3, 4}, {0, 4, 1},
+                     {1, 4, 5}, {1, 5, 2}, {2, 5, 3}, {2, 3, 0}};
+  const MediumPointer a = fog(RGB(0.5), "a"), b = fog(RGB(0.8), "b");
+  const auto below =
+      make_cube(place_ * Transform::translate({0, 0, -1}) * Transform::scale({3, 3, 1}));
+  const Scene scene(describe_scene(
+      {boundary(make_mesh(wedge), a, nullptr), boundary(below, b, nullptr)}, world({0.3, 0.2, 9})));
+  EXPECT_TRUE(scene.warnings().empty());
+  for (int i = -20; i < kRays; ++i) {
+    const double x = i < 0 ? 0.5 : 1e-9 * (i + 0.5);  // at 0 a ray lies in the edge
+    const auto edge =
+        connect(scene, point_at(world({x, 0.1, 1})), point_at(world({x, 0.1, -0.5}), b.get()));
+    ASSERT_TRUE(edge);
+    ASSERT_NEAR(edge->tau.x, std::exp(-unit() * (0.5 * 0.8 + 0.1 * x * 0.5)), 1e-5) << x;
+  }
+}
+
 /// Between n = 1.5 below z = 0 and 1.2 above it.
 void Contact::expect_one_interface(const Scene& scene, const Medium* below, const Medium* above,
                                    bool up, Rng& rng) const {
