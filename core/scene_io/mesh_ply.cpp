@@ -260,7 +260,9 @@ class PlyParser {
         (!rest.empty() && rest[0] != ' ' && rest[0] != '\t' && rest[0] != '\r' && rest[0] != '\n'))
       fail("expected a finite number, found " +
            quote(bytes_.substr(at_, bytes_.find_first_of(" \t\r\n", at_) - at_)));
+    constexpr double kMostWhole = 4294967295;  // of the widest type there is
     if (!is_float(type) && value != std::floor(value)) fail("expected a whole number");
+    if (!is_float(type) && std::abs(value) > kMostWhole) fail("no type holds so large a number");
     at_ = bytes_.size() - rest.size();
     return value;
   }

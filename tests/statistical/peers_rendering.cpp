@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "tests/statistical/peers_rendering.h"
 
+#include <numeric>
+
 #include "core/estimators/sampling.h"
 #include "core/image/image_io.h"
 #include "core/path/path.h"
@@ -34,10 +36,8 @@ Tiles empty_tiles(const Scene& scene, int replicates) {
   const auto [width, height] = rendered_size(scene.film());
   FOGBOW_CHECK(width % kTile == 0 && height % kTile == 0);
   const auto count = static_cast<std::size_t>(width / kTile) * (height / kTile);
-  return {width / kTile,
-          std::vector(replicates, std::vector<double>(count)),
-          std::vector<double>(count),
-          {}};
+  return {width / kTile, std::vector(replicates, std::vector<double>(count)),
+          std::vector<double>(count)};
 }
 
 }  // namespace
@@ -65,45 +65,65 @@ double Tiles::mean_excess(const std::vector<std::size_t>& tiles) const {
 }
 
 Pictures render_tiles(const Scene& scene, const Estimator& estimator, bool classified,
-                      int replicates, int rounds, std::uint64_t seed) {
+                      int replicates, const SamplesPerPixel& samples, std::uint64_t seed) {
   const auto [width, height] = rendered_size(scene.film());
   const Vec2 pixel(1.0 / width, 1.0 / height);
   Pictures result{empty_tiles(scene, replicates), empty_tiles(scene, replicates)};
+  for (Tiles* tiles : {&result.all, &result.by_light}) tiles->splats = tiles->replicates;
+  const std::size_t blocks = result.all.block_count();
+  using Sources = std::vector<double>;  // by block; last: light tracing
   std::vector<std::vector<double>> excess(replicates, std::vector<double>(result.all.count()));
-  std::vector<std::map<std::string, double>> classes(replicates);
+  std::vector<std::map<std::string, Sources>> classes(replicates);
   const PictureGrid grid{width / kTile, height / kTile};
-  parallel_for(replicates, [&, width = width, height = height](std::int64_t r) {
+
+  double total = 0;
+  for (std::size_t tile = 0; tile < grid.size(); ++tile)
+    total += kTile * kTile * samples(result.all.block(tile));
+  // What a sample of the picture adds to a tile's mean, and to the picture's: a pixel's own are
+  // their mean, light tracing's land everywhere from all of them.
+  const auto scale = [&, pixels = kTile * kTile](const Contribution& c, int here) {
+    return c.t == 1 ? static_cast<double>(grid.size()) / total : 1.0 / (pixels * here);
+  };
+  parallel_for(replicates, [&, width = width](std::int64_t r) {
     Workspace w;
-    for (int i = 0; i < rounds * width * height; ++i) {
-      const int x = i % width, y = i / width % height;
-      Rng rng(seed, RngDomain::Test, static_cast<std::uint64_t>(r), static_cast<std::uint64_t>(i));
+    std::uint64_t stream = 0;
+    const auto sample = [&](int x, int y, std::size_t block) {
+      Rng rng(seed, RngDomain::Test, static_cast<std::uint64_t>(r), stream++);
       PixelStream eye(rng, Vec2(x, y) * pixel, pixel);
       RandomStream light(rng);
       estimator.sample(light, eye, w);
       for (const Contribution& c : w.contributions) {
         const std::size_t tile = grid.cell(c.raster);
-        const double value = luminance(c.value);
-        result.all.replicates[r][tile] += value;
+        const double value = luminance(c.value) * scale(c, samples(block));
+        const auto add = [&](Tiles& tiles) {
+          tiles.replicates[r][tile] += value;
+          if (c.t == 1) tiles.splats[r][tile] += value;
+        };
+        add(result.all);
         if (!classified) continue;
         const Path path = assemble(scene, w.light, c.s, w.eye, c.t);
         excess[r][tile] += value * shadow_ray_excess(path);
-        classes[r][configuration_text(path)] += value;
-        if (reach(scene, path).light) result.by_light.replicates[r][tile] += value;
+        Sources& sources = classes[r][configuration_text(path)];
+        sources.resize(blocks + 1);
+        sources[c.t == 1 ? blocks : block] += value / static_cast<double>(grid.size());
+        if (reach(scene, path).light) add(result.by_light);
       }
-    }
+    };
+    for (std::size_t tile = 0; tile < grid.size(); ++tile)
+      for (int i = 0; i < kTile * kTile; ++i)
+        for (int round = 0; round < samples(result.all.block(tile)); ++round)
+          sample(static_cast<int>(tile) % grid.across * kTile + i % kTile,
+                 static_cast<int>(tile) / grid.across * kTile + i / kTile, result.all.block(tile));
     FOGBOW_CHECK(w.refused == 0);
   });
-  // The mean over all samples of what lands on a tile, times the number of tiles, is its mean.
-  const double samples = static_cast<double>(rounds) * width * height;
-  const double scale = static_cast<double>(grid.size()) / samples;
   for (int r = 0; r < replicates; ++r) {
-    for (std::size_t i = 0; i < grid.size(); ++i) {
-      result.all.replicates[r][i] *= scale;
-      result.by_light.replicates[r][i] *= scale;
-      result.all.excess[i] += excess[r][i] * scale / replicates;
+    for (std::size_t i = 0; i < grid.size(); ++i) result.all.excess[i] += excess[r][i] / replicates;
+    for (const auto& [configuration, sources] : classes[r]) {
+      auto& all = result.all.class_sources[configuration];
+      all.resize(replicates, Sources(blocks + 1));
+      all[r] = sources;
+      result.all.add_class(configuration, r, std::accumulate(sources.begin(), sources.end(), 0.0));
     }
-    for (const auto& [configuration, value] : classes[r])
-      result.all.add_class(configuration, r, value / samples);
   }
   return result;
 }

@@ -1,6 +1,6 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #pragma once
-#include <array>
+#include <functional>
 #include <map>
 #include <string>
 #include <vector>
@@ -13,6 +13,7 @@
 namespace fogbow::testing {
 
 inline constexpr int kTile = 16;  // pixels
+inline constexpr int kBlock = 4;  // tiles
 
 /// Mitsuba 3 ends its shadow rays this part of their length before the lamp (ShadowEpsilon in
 /// single precision) and takes the fog from the lamp to there for empty.
@@ -25,10 +26,24 @@ struct Tiles {
   /// By how much Mitsuba's fault makes a tile too bright at most: every path whose x₂ can be
   /// connected to a lamp in fog counts as if it had been.
   std::vector<double> excess;
+  /// The part of it that lands by light tracing (t = 1), wherever samples are taken; empty for
+  /// chains.
+  std::vector<std::vector<double>> splats{};
   /// b_k^c by configuration, in each replicate; empty where the sampler does not tell.
   std::map<std::string, std::vector<double>> classes{};
+  /// Their parts by where they come from: the blocks of pixels, and light tracing.
+  std::map<std::string, std::vector<std::vector<double>>> class_sources{};
 
   std::size_t count() const { return excess.size(); }
+  /// Blocks of kBlock × kBlock tiles.
+  std::size_t blocks_across() const {
+    return (static_cast<std::size_t>(across) + kBlock - 1) / kBlock;
+  }
+  std::size_t block_count() const { return block(count() - 1) + 1; }
+  std::size_t block(std::size_t tile) const {
+    const auto width = static_cast<std::size_t>(across);
+    return tile / width / kBlock * blocks_across() + tile % width / kBlock;
+  }
   Estimate estimate(const std::vector<std::size_t>& tiles) const;
   double mean_excess(const std::vector<std::size_t>& tiles) const;
   void add_class(const std::string& configuration, int replicate, double value);
@@ -38,10 +53,11 @@ struct Tiles {
 struct Pictures {
   Tiles all, by_light;
 };
-/// One sample a pixel and round. `classified`: with excess, classes and by_light, which need every
-/// path in one piece; the path tracer has none.
+/// So many samples for each pixel of a block in every replicate, or in each block. `classified`:
+/// with excess, classes and by_light, which need every path in one piece; the path tracer has none.
+using SamplesPerPixel = std::function<int(std::size_t block)>;
 Pictures render_tiles(const Scene& scene, const Estimator& estimator, bool classified,
-                      int replicates, int rounds, std::uint64_t seed);
+                      int replicates, const SamplesPerPixel& samples, std::uint64_t seed);
 struct ChainOptions {
   std::string integrator;  ///< pssmlt or mlt
   int max_depth;

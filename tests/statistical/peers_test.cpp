@@ -7,13 +7,15 @@
 #include <cstdio>
 #include <cstdlib>
 #include <map>
+#include <numeric>
+#include <ranges>
 
 #include "core/estimators/sampling.h"
 #include "core/image/image_io.h"
 #include "core/scene_io/load.h"
 #include "media/registry.h"
 #include "mlt/registry.h"
-#include "tests/statistical/peers_rendering.h"
+#include "tests/statistical/peers_budget.h"
 
 namespace fogbow {
 namespace {
@@ -21,13 +23,15 @@ namespace {
 using namespace testing;
 
 constexpr int kMaxDepth = 64;  // as most references
-constexpr int kReplicates = 32;
+/// Of renders by chains, of samples. Few would cost power: Student's t at this level is wide.
+constexpr int kRenders = 64, kReplicates = 96;
 /// A pixel; a replicate's bootstrap takes no less time.
 constexpr int kPilotMutations = 4;
 constexpr int kMostClasses = 40;
-constexpr int kTests = (15 * 7 + 2 * 8) * (256 + 16 + 1 + kMostClasses);
+constexpr int kTests = (15 * 7 + 2 * 9) * (256 + 16 + 1 + kMostClasses);
 const double kLevel = sidak(kSuiteFalseAlarm, kTests);
 constexpr double kPower = 0.99;
+const Rigour kRigour{kLevel, kPower};
 
 bool is_long() { return std::getenv("FOGBOW_LONG") != nullptr; }
 
@@ -83,37 +87,11 @@ std::vector<std::size_t> believable_tiles(const Reference& reference, const Tile
   return tiles;
 }
 
-std::vector<std::size_t> all_tiles(const Tiles& like) {
-  std::vector<std::size_t> tiles(like.count());
-  for (std::size_t i = 0; i < tiles.size(); ++i) tiles[i] = i;
-  return tiles;
-}
-
 /// `theirs` may exceed the truth by anything from nothing to `excess`.
 double p_value(Estimate ours, const Estimate& theirs, double excess) {
   ours.mean += std::clamp(theirs.mean - ours.mean, 0.0, excess);
   return welch(ours, theirs);
 }
-
-/// Parts of the picture of 4 × 4 tiles.
-std::vector<std::vector<std::size_t>> blocks_of(const std::vector<std::size_t>& tiles,
-                                                std::size_t across) {
-  constexpr std::size_t kBlock = 4;
-  std::map<std::pair<std::size_t, std::size_t>, std::vector<std::size_t>> blocks;
-  for (const std::size_t i : tiles) blocks[{i / across / kBlock, i % across / kBlock}].push_back(i);
-  std::vector<std::vector<std::size_t>> result;
-  for (auto& block : blocks) result.push_back(std::move(block.second));
-  return result;
-}
-
-/// What is to be found with 99% probability, in parts of the value: of the mean, and of a block or
-/// class (0: of none) that is not dark.
-struct Bias {
-  double mean, part;
-};
-constexpr double kDark = 0.5;             // of the mean
-constexpr double kNotableClass = 0.05;    // of all light
-constexpr double kComparedClass = 0.002;  // the others are one
 
 /// Each tile, each block of tiles, and all of them together.
 template <class Theirs>
@@ -139,7 +117,7 @@ void expect_equal(const std::string& name, const Tiles& ours, const Theirs& thei
     least_power = std::min(least_power, seen);
   };
   for (const std::size_t i : tiles) expect("tile " + std::to_string(i), {i}, 0);
-  for (const auto& block : blocks_of(tiles, static_cast<std::size_t>(ours.across)))
+  for (const auto& block : blocks_of(ours, tiles))
     expect("block of tile " + std::to_string(block.front()), block, bias.part);
   expect("mean", tiles, bias.mean);
   const Estimate a = ours.estimate(tiles), b = theirs(tiles);
@@ -189,31 +167,32 @@ void expect_equal_classes(const std::string& name, const Tiles& ours, const Tile
       name.c_str(), compared.size(), least, 100 * bias.part, least_power);
 }
 
-/// `render`(samples a pixel, seed) with as many as `bias` takes, found by an independent pilot.
+constexpr double kSafety = 1.5;  // a pilot's own errors are uncertain
+
+/// `render`(mutations a pixel, seed) with as many as `bias` takes, found by an independent pilot.
 template <class Render>
-auto render_enough(const Render& render, int pilot_samples, const Bias& bias, std::uint64_t seed) {
-  constexpr double kSafety = 1.5;  // the pilot's own errors are uncertain
-  const auto pilot = render(pilot_samples, seed);
-  const auto tiles_of = [](const auto& result) -> const Tiles& {
-    if constexpr (requires { result.all; })
-      return result.all;
-    else
-      return result;
-  };
-  const Tiles& tiles = tiles_of(pilot);
-  double most = 1;
-  const auto need = [&](const Estimate& e, double part) {
-    most = std::max(most, samples_needed(e, part * e.mean, kLevel, kPower));
-  };
-  const Estimate mean = tiles.estimate(all_tiles(tiles));
-  need(mean, bias.mean);
-  for (const auto& block : blocks_of(all_tiles(tiles), static_cast<std::size_t>(tiles.across)))
-    if (const Estimate e = tiles.estimate(block); e.mean > kDark * mean.mean) need(e, bias.part);
-  double b = 0;
-  for (const auto& [configuration, values] : tiles.classes) b += estimate(values).mean;
-  for (const auto& [configuration, values] : tiles.classes)
-    if (const Estimate e = estimate(values); e.mean > kNotableClass * b) need(e, bias.part);
-  return render(static_cast<int>(std::ceil(kSafety * most * pilot_samples)), seed + 1);
+Tiles chains_enough(const Render& render, const Bias& bias, std::uint64_t seed) {
+  const auto all = demands(render(kPilotMutations, seed), bias, kRigour);
+  const auto most = std::ranges::max_element(all, {}, &Demand::growth);
+  std::printf("chains: %.1f times the pilot, for %s\n", kSafety * most->growth, most->name.c_str());
+  return render(static_cast<int>(std::ceil(kSafety * most->growth * kPilotMutations)), seed + 1);
+}
+
+/// `render`(samples a pixel of each block, seed), as chains_enough(), with what its part that is
+/// `compared` takes.
+template <class Render>
+Pictures samples_enough(const Render& render, Tiles Pictures::*compared, const Bias& bias,
+                        std::uint64_t seed) {
+  const Pictures pilot = render([](std::size_t) { return 1; }, seed);
+  const std::vector<double> factor =
+      shares(pilot.*compared, demands(pilot.*compared, bias, kRigour));
+  std::printf("samples: %.1f times the pilot, %.1f in the hardest block\n",
+              kSafety * std::accumulate(factor.begin(), factor.end(), 0.0) /
+                  static_cast<double>(factor.size()),
+              kSafety * std::ranges::max(factor));
+  return render(
+      [&](std::size_t block) { return static_cast<int>(std::ceil(kSafety * factor[block])); },
+      seed + 1);
 }
 
 class Peers : public ::testing::TestWithParam<Peer> {};
@@ -229,16 +208,17 @@ TEST_P(Peers, PicturesAgreeWithMitsuba) {
       load_mitsuba_xml("scenes/" + peer.name + "/scene.xml", builtin_media(), options, warnings));
   const EstimatorSettings settings{.max_depth = peer.max_depth};
   const Bias bias = is_long() ? Bias{0.01, 0.05} : Bias{0.03, 0};
-  const auto independent = [&](const Estimator& estimator, bool classified, std::uint64_t stream) {
-    const auto rendering = [&](int rounds, std::uint64_t seed) {
-      return render_tiles(scene, estimator, classified, kReplicates, rounds, seed);
+  const auto independent = [&](const Estimator& estimator, bool classified,
+                               Tiles Pictures::*compared, std::uint64_t stream) {
+    const auto rendering = [&](const SamplesPerPixel& samples, std::uint64_t seed) {
+      return render_tiles(scene, estimator, classified, kReplicates, samples, seed);
     };
-    constexpr int kFastRounds = 16, kPilotRounds = 2;
-    return is_long() ? render_enough(rendering, kPilotRounds, bias, suite_seed() + stream)
-                     : rendering(kFastRounds, suite_seed() + stream);
+    constexpr int kFastSamples = 5;
+    return is_long() ? samples_enough(rendering, compared, bias, suite_seed() + stream)
+                     : rendering([](std::size_t) { return kFastSamples; }, suite_seed() + stream);
   };
 
-  const Pictures bdpt = independent(*make_bdpt(scene, settings), true, 70);
+  const Pictures bdpt = independent(*make_bdpt(scene, settings), true, &Pictures::all, 70);
   const Tiles& ours = bdpt.all;
   const Reference reference = read_reference(peer.name, scene);
   const auto theirs = [&](const std::vector<std::size_t>& tiles) {
@@ -248,26 +228,28 @@ TEST_P(Peers, PicturesAgreeWithMitsuba) {
     return [&tiles](const std::vector<std::size_t>& part) { return tiles.estimate(part); };
   };
   const auto tiles = believable_tiles(reference, ours);
-  const Tiles none{ours.across, {}, std::vector<double>(ours.count()), {}};
+  const Tiles none{ours.across, {}, std::vector<double>(ours.count())};
   const std::string they = peer.by_mitsuba ? ", Mitsuba" : ", reference";
   const Tiles& excess = peer.by_mitsuba ? ours : none;
   expect_equal(peer.name + ": bdpt" + they, ours, theirs, tiles, excess, bias);
   if (!is_long()) return;
 
   if (peer.path_converges) {
-    const Tiles path = independent(*make_path_tracer(scene, settings), false, 80).all;
+    const Tiles path =
+        independent(*make_path_tracer(scene, settings), false, &Pictures::all, 80).all;
     expect_equal(peer.name + ": path" + they, path, theirs, tiles, excess, bias);
   }
-  const Tiles light = independent(*make_light_tracer(scene, settings), true, 100).by_light;
+  const Tiles light =
+      independent(*make_light_tracer(scene, settings), true, &Pictures::by_light, 100).by_light;
   expect_equal(peer.name + ": light, bdpt", light, of(bdpt.by_light), all_tiles(ours), none, bias);
   // Whatever the reference cannot tell, two of our own samplers must agree on.
   for (const std::string integrator : {"pssmlt", "mlt"}) {
-    const Tiles chains = render_enough(
+    const Tiles chains = chains_enough(
         [&](int mutations, std::uint64_t seed) {
-          return render_tiles_by_chains(scene, {integrator, peer.max_depth, ""}, kReplicates,
+          return render_tiles_by_chains(scene, {integrator, peer.max_depth, ""}, kRenders,
                                         mutations, seed);
         },
-        kPilotMutations, bias, suite_seed() + 90);
+        bias, suite_seed() + 90);
     expect_equal(peer.name + ": " + integrator + ", bdpt", chains, of(ours), all_tiles(ours), none,
                  bias);
     expect_equal(peer.name + ": " + integrator + they, chains, theirs, tiles, excess, bias);
@@ -294,25 +276,26 @@ TEST_P(MutationAlone, AgreesWithBdpt) {
       load_mitsuba_xml("scenes/" + scene_name + "/scene.xml", builtin_media(), {}, warnings));
   static std::map<std::string, Tiles> by_bdpt;
   if (!by_bdpt.contains(scene_name))
-    by_bdpt[scene_name] = render_enough(
-        [&](int rounds, std::uint64_t seed) {
-          return render_tiles(scene, *make_bdpt(scene, {.max_depth = kMaxDepth}), false,
-                              kReplicates, rounds, seed)
-              .all;
-        },
-        2, bias, suite_seed() + 110);
+    by_bdpt[scene_name] =
+        samples_enough(
+            [&](const SamplesPerPixel& samples, std::uint64_t seed) {
+              return render_tiles(scene, *make_bdpt(scene, {.max_depth = kMaxDepth}), false,
+                                  kReplicates, samples, seed);
+            },
+            &Pictures::all, bias, suite_seed() + 110)
+            .all;
   const Tiles& bdpt = by_bdpt[scene_name];
   const std::string mutations = mutation + ":1,large_step:1";
-  const Tiles chains = render_enough(
+  const Tiles chains = chains_enough(
       [&](int per_pixel, std::uint64_t seed) {
-        return render_tiles_by_chains(scene, {"mlt", kMaxDepth, mutations}, kReplicates, per_pixel,
+        return render_tiles_by_chains(scene, {"mlt", kMaxDepth, mutations}, kRenders, per_pixel,
                                       seed);
       },
-      kPilotMutations, bias, suite_seed() + 120);
+      bias, suite_seed() + 120);
   expect_equal(
       scene_name + ": " + mutation, chains,
       [&](const std::vector<std::size_t>& part) { return bdpt.estimate(part); }, all_tiles(bdpt),
-      Tiles{bdpt.across, {}, std::vector<double>(bdpt.count()), {}}, bias);
+      Tiles{bdpt.across, {}, std::vector<double>(bdpt.count())}, bias);
 }
 
 std::vector<std::string> mutations_but_large_steps() {

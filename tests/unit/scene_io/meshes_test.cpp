@@ -135,6 +135,9 @@ TEST(Ply, ErrorsNameTheirPlace) {
             "m:13:6: a face needs three vertices");
   EXPECT_EQ(error_of(parse_ply, head + vertices + "3 0 1 1.5\n"),
             "m:13:7: expected a whole number");
+  for (const char* index : {"1e72", "-1e72", "4294967296"})
+    EXPECT_EQ(error_of(parse_ply, head + vertices + "3 0 " + index + " 2\n"),
+              "m:13:5: no type holds so large a number");
   EXPECT_EQ(error_of(parse_ply, head + vertices + "-3 0 1 2\n").substr(0, 26),
             "m:13:3: a list longer than");
   EXPECT_EQ(error_of(parse_ply, head + vertices + "255 0 1 2\n").substr(0, 26),
