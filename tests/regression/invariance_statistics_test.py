@@ -55,7 +55,7 @@ def overrides_of(integrator, twin):
 
 class Manifest:
     def __init__(self, folder):
-        self.folder, self.pairs, self.written = folder, [], {}
+        self.folder, self.pairs, self.written, self.turn = folder, [], {}, 0
 
     def side(self, scene, integrator, more=1, twin=False, **options):
         more *= NOISY_INTEGRATORS.get(integrator, 1)
@@ -71,8 +71,13 @@ class Manifest:
             pair["window"] = window
         self.pairs.append(pair)
 
+    def in_turn(self, integrators):
+        """All in the long suite. Else every other one, so that each change is seen by some, and each integrator sees most."""
+        self.turn += 1
+        return integrators if LONG else integrators[self.turn % 2::2]
+
     def compare(self, name, scene, other, integrators=INTEGRATORS, replicates=FEW, more=1):
-        for integrator in integrators:
+        for integrator in self.in_turn(integrators):
             twin = replicates == FEW
             self.add(f"{name}, {integrator}", self.side(scene, integrator, more, twin),
                      self.side(other, integrator, more, twin), replicates)

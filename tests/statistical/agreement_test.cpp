@@ -90,7 +90,7 @@ TEST_P(Agreement, EachIntegratorEqualsBdptOnWhatBothCanMake) {
   tests += expect("bdpt, light", bdpt, light, Restriction::ByLight);
   // Chains take a minute or more on each scene: a sample of them, all in the long suite. In the
   // fast one class_shares_test compares chains with bdpt on every scene.
-  const std::set<std::string> sampled{"surfaces", "floor-fog", "flame"};
+  const std::set<std::string> sampled{"surfaces", "flame"};
   if (!std::getenv("FOGBOW_LONG") && !sampled.contains(GetParam().name)) return;
   // Chains that share their time as the light is shared know the mean best.
   tests += expect("bdpt, pssmlt", bdpt, chains("pssmlt", false, 40));
