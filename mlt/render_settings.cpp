@@ -82,6 +82,12 @@ RenderSettings read_render_settings(const Scene& scene, const RenderOptions& opt
   if (!asked.type.empty() && asked.type != settings.integrator)
     settings.notes.push_back("the scene asks for integrator \"" + asked.type +
                              "\"; rendered by \"" + settings.integrator + "\"");
+  // Light from emitters on the first surface: what this integrator's picture is, by any sampler.
+  constexpr int kDirectDepth = 2;
+  if (asked.type == "direct") {
+    settings.max_depth = kDirectDepth;
+    settings.depth_capped = false;
+  }
   for (const auto& [name, value] : asked.properties)
     if (!apply(settings, name, value))
       settings.notes.push_back("integrator property \"" + name + "\" has no effect");

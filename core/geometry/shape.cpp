@@ -11,6 +11,14 @@ std::array<Vec3, 2> Shape::uv_tangents(const SurfacePoint& x) const {
   return {(b.y * d.dp_du - a.y * d.dp_dv) / det, (a.x * d.dp_dv - b.x * d.dp_du) / det};
 }
 
+Vec2 u_axis(const SurfacePoint& x) {
+  if (!x.shape) return {1, 0};
+  const Vec3 u = x.shading.to_local(x.shape->uv_tangents(x)[0]);
+  const double length_u = std::hypot(u.x, u.y);
+  if (!(length_u > 0) || !std::isfinite(length_u)) return {1, 0};
+  return Vec2(u.x, u.y) / length_u;
+}
+
 bool Shape::avoids(std::uint32_t primitive, const Bounds& box) const {
   if (!primitive_bounds(primitive).overlaps(box)) return true;
   if (!polygonal()) return false;

@@ -120,4 +120,8 @@ class Shape {
   virtual Tessellation tessellate() const = 0;
 };
 
+/// Unit vector along ∂p/∂u in the tangent plane of the shading normal, in the shading frame; x̂
+/// where that vanishes, or of no shape.
+Vec2 u_axis(const SurfacePoint& x);
+
 }  // namespace fogbow

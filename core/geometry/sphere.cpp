@@ -69,7 +69,8 @@ SurfacePoint Sphere::surface_point(std::uint32_t, const Vec2& local) const {
 
 SurfaceDerivatives Sphere::derivatives(const SurfacePoint& x) const {
   const double curvature = (flip_ ? -1 : 1) / radius_;
-  return {x.shading.s, x.shading.t, curvature * x.shading.s, curvature * x.shading.t};
+  const Frame tangent(x.n_g);  // not x.shading, which bump maps turn
+  return {tangent.s, tangent.t, curvature * tangent.s, curvature * tangent.t};
 }
 
 std::array<Vec2, 2> Sphere::uv_derivatives(const SurfacePoint& x) const {
@@ -79,7 +80,8 @@ std::array<Vec2, 2> Sphere::uv_derivatives(const SurfacePoint& x) const {
     const Vec3 d = to_object_ * (direction / radius_);
     return Vec2(0.5 * kInvPi * (m.x * d.y - m.y * d.x) / sin2, -kInvPi * d.z / std::sqrt(sin2));
   };
-  return {along(x.shading.s), along(x.shading.t)};
+  const Frame tangent(x.n_g);
+  return {along(tangent.s), along(tangent.t)};
 }
 
 SurfacePoint Sphere::sample(const Vec2& u) const {

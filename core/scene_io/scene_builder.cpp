@@ -321,16 +321,27 @@ void SceneBuilder::sensor(const XmlNode& node) {
 void SceneBuilder::integrator(const XmlNode& node) {
   if (has_integrator_) throw Error(ErrorKind::Scene, node.where(), "a second integrator");
   has_integrator_ = true;
+  integrator_settings(node);
+}
+
+/// One that holds another ("moment", "aov", "multichannel") says what to note of its picture: the
+/// inner one says which picture it is.
+void SceneBuilder::integrator_settings(const XmlNode& node) {
   const Nesting guard(open_, node);
   Object object = read(node);
-  scene_.integrator.type = object.properties.plugin();
-  hash_.add(scene_.integrator.type);
-  for (const XmlNode& child : node.children)
-    if (is_value_tag(child.tag))
-      scene_.integrator.properties.emplace_back(*child.attribute("name"), property_text(child));
-  for (const Child& child : object.children)
-    diagnostics_.warn(child.where,
-                      "the " + child.node->tag + " nested in an integrator has no effect");
+  if (const Child* inner = object.take_one("integrator")) {
+    integrator_settings(*inner->node);
+    finish(object);
+  } else {
+    scene_.integrator.type = object.properties.plugin();
+    hash_.add(scene_.integrator.type);
+    for (const XmlNode& child : node.children)
+      if (is_value_tag(child.tag))
+        scene_.integrator.properties.emplace_back(*child.attribute("name"), property_text(child));
+    for (const Child& child : object.children)
+      diagnostics_.warn(child.where,
+                        "the " + child.node->tag + " nested in an integrator has no effect");
+  }
   hash_.add(object.hash.value());
 }
 

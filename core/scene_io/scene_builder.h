@@ -70,6 +70,7 @@ class SceneBuilder {
   void sampler(const XmlNode& node, ContentHash& hash);
   void sensor(const XmlNode& node);
   void integrator(const XmlNode& node);
+  void integrator_settings(const XmlNode& node);
   void shape(const XmlNode& node);
   void surface(const XmlNode& node, const Transform* instance = nullptr);
   void instance(const XmlNode& node);

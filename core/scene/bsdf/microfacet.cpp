@@ -97,9 +97,11 @@ double VisibleSlope::sample(double u) const {
 
 }  // namespace
 
-MicrofacetDistribution::MicrofacetDistribution(MicrofacetKind kind, double alpha_u, double alpha_v)
+MicrofacetDistribution::MicrofacetDistribution(MicrofacetKind kind, double alpha_u, double alpha_v,
+                                               const Vec2& u_axis)
     : kind_(kind),
       alpha_(std::max(alpha_u, kLeastAlpha), std::max(alpha_v, kLeastAlpha)),
+      u_(u_axis),
       normalization_(kInvPi / (alpha_.x * alpha_.y)) {
   for (const double a : {alpha_u, alpha_v})
     if (!(a >= 0 && std::isfinite(a)))
@@ -109,21 +111,24 @@ MicrofacetDistribution::MicrofacetDistribution(MicrofacetKind kind, double alpha
 TexturedFacets::TexturedFacets(const RoughnessSettings& roughness)
     : settings_(roughness),
       constant_(roughness.kind, roughness.alpha_u.mean(), roughness.alpha_v.mean()),
-      varies_(!roughness.alpha_u.constant() || !roughness.alpha_v.constant()) {
+      varies_(!roughness.alpha_u.constant() || !roughness.alpha_v.constant() ||
+              roughness.alpha_u.mean() != roughness.alpha_v.mean()) {
   const Texture::Range u = roughness.alpha_u.range(), v = roughness.alpha_v.range();
   // Throws where the constructor of a distribution could.
   const MicrofacetDistribution least(roughness.kind, u.least, v.least);
   roughness_ = MicrofacetDistribution(roughness.kind, u.greatest, v.greatest).roughness();
 }
 
-double MicrofacetDistribution::D(const Vec3& h) const {
+double MicrofacetDistribution::D(const Vec3& normal) const {
+  const Vec3 h = to_axes(normal);
   const double z2 = h.z * h.z;
   const double slope2 = sqr(h.x / alpha_.x) + sqr(h.y / alpha_.y);
   if (kind_ == MicrofacetKind::Ggx) return normalization_ / sqr(slope2 + z2);
   return z2 > 0 ? normalization_ * std::exp(-slope2 / z2) / sqr(z2) : 0.0;
 }
 
-double MicrofacetDistribution::G1(const Vec3& w) const {
+double MicrofacetDistribution::G1(const Vec3& direction) const {
+  const Vec3 w = to_axes(direction);
   const double z = std::fabs(w.z);
   const double stretched = std::sqrt(sqr(alpha_.x * w.x) + sqr(alpha_.y * w.y));
   if (kind_ == MicrofacetKind::Ggx)
@@ -141,17 +146,17 @@ Vec3 MicrofacetDistribution::sample_visible(const Vec3& w, const Vec2& u) const 
     // Reflections of v at the hemisphere are uniform on a spherical cap (Dupuy and Benyoub 2023).
     const Vec3 c = warp::spherical_direction(u.x * (1 + v.z), u.y);
     const Vec3 h = c + v;
-    return normalize(Vec3(alpha_.x * h.x, alpha_.y * h.y, h.z));
+    return from_axes(normalize(Vec3(alpha_.x * h.x, alpha_.y * h.y, h.z)));
   }
   const double sin_theta = std::sqrt(v.x * v.x + v.y * v.y);
   const Vec2 plane = sin_theta > 0 ? Vec2(v.x, v.y) / sin_theta : Vec2(1, 0);
   const double x = VisibleSlope(v.z, sin_theta).sample(u.x), y = gaussian_slope(u.y);
   const Vec2 slope(plane.x * x - plane.y * y, plane.y * x + plane.x * y);
-  return normalize(Vec3(-alpha_.x * slope.x, -alpha_.y * slope.y, 1));
+  return from_axes(normalize(Vec3(-alpha_.x * slope.x, -alpha_.y * slope.y, 1)));
 }
 
-Vec2 MicrofacetDistribution::invert_visible(const Vec3& w, const Vec3& h) const {
-  const Vec3 v = stretch(w);
+Vec2 MicrofacetDistribution::invert_visible(const Vec3& w, const Vec3& normal) const {
+  const Vec3 v = stretch(w), h = to_axes(normal);
   if (kind_ == MicrofacetKind::Ggx) {
     const Vec3 m = normalize(Vec3(h.x / alpha_.x, h.y / alpha_.y, h.z));
     const Vec3 c = 2 * dot(v, m) * m - v;

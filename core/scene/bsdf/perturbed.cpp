@@ -9,15 +9,10 @@
 namespace fogbow {
 namespace {
 
-/// The axes that normal maps refer to, in the shading frame: ∂p/∂u in the tangent plane comes
-/// first.
+/// The axes that normal maps refer to, in the shading frame.
 Frame map_axes(const SurfacePoint& x) {
-  if (!x.shape) return {};
-  const Vec3 u = x.shading.to_local(x.shape->uv_tangents(x)[0]);
-  const double length_u = std::hypot(u.x, u.y);
-  if (!(length_u > 0) || !std::isfinite(length_u)) return {};
-  const Vec3 s = Vec3(u.x, u.y, 0) / length_u;
-  return {s, Vec3(-s.y, s.x, 0), Vec3(0, 0, 1)};
+  const Vec2 u = u_axis(x);
+  return {Vec3(u, 0), Vec3(-u.y, u.x, 0), Vec3(0, 0, 1)};
 }
 
 /// The unit normal that a normal map encodes.
@@ -72,19 +67,20 @@ class Perturbed final : public Base {
     const Vec3 light = frame.to_local(w_light), eye = frame.to_local(w_eye);
     if (!(light.z * w_light.z > 0 && eye.z * w_eye.z > 0)) return RGB(0);
     // Light arrives at the perturbed surface: its cosine in place of the other's.
-    return nested_->f_s(x, light, eye) * (light.z / w_light.z * shadowing(frame.n, w_light));
+    return nested_->f_s(within(x, frame), light, eye) *
+           (light.z / w_light.z * shadowing(frame.n, w_light));
   }
   double pdf_sigma(const SurfacePoint& x, const Vec3& from, const Vec3& to) const override {
     const Frame frame = frame_of(x, from);
     const Vec3 a = frame.to_local(from), b = frame.to_local(to);
-    return a.z * from.z > 0 && b.z * to.z > 0 ? nested_->pdf_sigma(x, a, b) : 0.0;
+    return a.z * from.z > 0 && b.z * to.z > 0 ? nested_->pdf_sigma(within(x, frame), a, b) : 0.0;
   }
   std::optional<BsdfSample> sample(const SurfacePoint& x, const Vec3& from,
                                    const Vec3& u) const override {
     const Frame frame = frame_of(x, from);
     const Vec3 a = frame.to_local(from);
     if (!(a.z * from.z > 0)) return std::nullopt;
-    auto result = nested_->sample(x, a, u);
+    auto result = nested_->sample(within(x, frame), a, u);
     if (!result) return std::nullopt;
     const Vec3 to = frame.to_world(result->w);
     if (!(to.z * result->w.z > 0)) return std::nullopt;
@@ -94,7 +90,8 @@ class Perturbed final : public Base {
                              const Vec3& auxiliary) const override {
     if (dirac || !(pdf_sigma(x, from, to) > 0)) return std::nullopt;
     const Frame frame = frame_of(x, from);
-    return nested_->invert(x, frame.to_local(from), frame.to_local(to), false, auxiliary);
+    return nested_->invert(within(x, frame), frame.to_local(from), frame.to_local(to), false,
+                           auxiliary);
   }
 
   double eta() const override { return nested_->eta(); }
@@ -106,6 +103,12 @@ class Perturbed final : public Base {
     Vec3 n = map_(x);
     if (settings_.flip_invalid_normals && !(dot(n, viewer) * viewer.z > 0)) n = {-n.x, -n.y, n.z};
     return Frame(n);
+  }
+  /// The point as the nested BSDF sees it.
+  static SurfacePoint within(SurfacePoint x, const Frame& frame) {
+    x.shading = {x.shading.to_world(frame.s), x.shading.to_world(frame.t),
+                 x.shading.to_world(frame.n)};
+    return x;
   }
   double shadowing(const Vec3& n, const Vec3& w) const {
     if (!settings_.shadowing) return 1;

@@ -95,8 +95,8 @@ class Principled final : public Base {
   RGB diffuse(const SurfacePoint& x, const At& at, const Vec3& a, const Vec3& b) const;
   static MicrofacetDistribution facets(const PrincipledSettings& s, const SurfacePoint& x) {
     const double rough2 = sqr(s.roughness(x)), aspect = std::sqrt(1 - 0.9 * s.anisotropic(x));
-    return {MicrofacetKind::Ggx, std::max(0.001, rough2 / aspect),
-            std::max(0.001, rough2 * aspect)};
+    return {MicrofacetKind::Ggx, std::max(0.001, rough2 / aspect), std::max(0.001, rough2 * aspect),
+            x};
   }
 
   PrincipledSettings s_;

@@ -44,5 +44,19 @@ TEST(Render, PointLightsAreNotSeenByPinholes) {
   }
 }
 
+TEST(Render, DirectLightIsOfPathsOfTwoEdges) {
+  SceneDescription description = testing::make_test_scene("surfaces");
+  description.integrator.type = "direct";
+  const Scene direct(SceneDescription{description});
+  for (const char* integrator : {"path", "bdpt", "mlt"}) {
+    const RenderResult result = render(direct, options_of(integrator, 1));
+    ASSERT_FALSE(result.lengths.empty());
+    EXPECT_EQ(result.lengths.back().k, 3) << integrator;
+  }
+  RenderOptions deeper = options_of("path", 1);
+  deeper.overrides = {{"max_depth", "3"}};
+  EXPECT_EQ(render(direct, deeper).lengths.back().k, 4);
+}
+
 }  // namespace
 }  // namespace fogbow

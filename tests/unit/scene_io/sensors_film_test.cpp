@@ -258,5 +258,23 @@ TEST(Integrator, KeepsItsPropertiesAsText) {
       std::string::npos);
 }
 
+TEST(Integrator, OneInsideAnotherSaysWhichPicture) {
+  SceneFolder folder;
+  const std::string sensor = "<sensor type=\"perspective\"/>";
+  const std::string text = R"(<scene version="3.0.0"><integrator type="aov">
+<string name="aovs" value="dd:depth"/>
+<integrator type="moment"><integrator type="path"><integer name="max_depth" value="2"/>
+<boolean name="hide_emitters" value="true"/></integrator></integrator></integrator>)";
+  const auto scene = folder.load_text(text + sensor + "</scene>");
+  EXPECT_EQ(scene.integrator.type, "path");
+  const std::vector<std::pair<std::string, std::string>> expected{{"max_depth", "2"},
+                                                                  {"hide_emitters", "true"}};
+  EXPECT_EQ(scene.integrator.properties, expected);
+  ASSERT_EQ(folder.warnings.size(), 1u);
+  EXPECT_NE(folder.warnings[0].find("2:1: string \"aovs\" of integrator \"aov\" has no effect"),
+            std::string::npos)
+      << folder.warnings[0];
+}
+
 }  // namespace
 }  // namespace fogbow
