@@ -31,6 +31,11 @@ std::shared_ptr<Emitter> make_directional_emitter(const Vec3& direction, const R
 std::shared_ptr<Emitter> make_spot_emitter(const Vec3& position, const Vec3& axis,
                                            const RGB& intensity, double cutoff_degrees,
                                            double beam_degrees);
+/// The same at the origin of `to_world` along +z, times a picture whose u and v grow along +x and
+/// +y and which spans the cone, as in Mitsuba 3.
+std::shared_ptr<Emitter> make_spot_emitter(const Transform& to_world, const RGB& intensity,
+                                           double cutoff_degrees, double beam_degrees,
+                                           const Textured<RGB>& slide);
 /// A picture thrown from the origin of `to_world` along +z, upright as a pinhole camera would see
 /// it: a plane across the axis at distance one gets π times the picture's values; the field of view
 /// is the picture's horizontal one.

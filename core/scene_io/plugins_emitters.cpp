@@ -38,12 +38,11 @@ std::shared_ptr<Emitter> directional(Properties& p, const PictureContext&) {
 }
 
 std::shared_ptr<Emitter> spot(Properties& p, const PictureContext&) {
-  const Transform to_world = p.transform("to_world");
   const double cutoff = p.number("cutoff_angle", 20);
   const double beam = p.number("beam_width", 0.75 * cutoff);
   p.take<Medium>();
-  return make_spot_emitter(to_world.point(Vec3(0)), to_world.vector(Vec3(0, 0, 1)),
-                           p.color("intensity", RGB(1)), cutoff, beam);
+  return make_spot_emitter(p.transform("to_world"), p.color("intensity", RGB(1)), cutoff, beam,
+                           p.textured_color("texture", RGB(1)));
 }
 
 /// The linear value of an sRGB one (IEC 61966-2-1).

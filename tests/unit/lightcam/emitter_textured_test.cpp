@@ -158,5 +158,40 @@ TEST(TexturedAreaEmitter, RefusesWhatCannotShine) {
   EXPECT_NO_THROW(make_area_emitter(shape, board(0, 1)));
 }
 
+/// u in red, v in green.
+std::shared_ptr<const Texture> coordinates() {
+  constexpr int n = 256;
+  Image image(n, n, {"R", "G", "B"});
+  for (int y = 0; y < n; ++y)
+    for (int x = 0; x < n; ++x) {
+      image.at(x, y, 0) = (static_cast<float>(x) + 0.5f) / n;
+      image.at(x, y, 1) = (static_cast<float>(y) + 0.5f) / n;
+      image.at(x, y, 2) = 1;
+    }
+  return make_bitmap_texture(image, BitmapSettings{});
+}
+
+/// sample_direction of Mitsuba 3.9.1, cutoff 35 degrees and beam width 20, at distance 1.
+TEST(SpotEmitter, ShinesThroughASlideAsMitsubas) {
+  const struct {
+    Vec3 w;
+    RGB value;
+  } values[] = {
+      {Vec3(0.58274639, 0.61958504, 0.52585286), RGB(2.92161, 2.1612, 4)},
+      {Vec3(0.51634198, -0.031175729, 0.85581493), RGB(0.482416, 1.13891, 2.70242)},
+      {Vec3(0.7271437, 0.30814448, 0.61344039), RGB(2.13129, 1.46687, 4)},
+      {Vec3(0.4992941, 0.26189557, 0.8259033), RGB(1.51744, 2.14515, 4)},
+      {Vec3(0.53426868, 0.34382328, 0.77223229), RGB(1.81874, 2.12635, 4)},
+      {Vec3(0.48771882, 0.42117313, 0.76468533), RGB(1.97401, 2.33524, 4)},
+  };
+  const Transform to_world = Transform::translate({1, 2, 3}) * Transform::rotate({0, 0.6, 0.8}, 77);
+  const auto emitter = make_spot_emitter(to_world, RGB(4), 35, 20, coordinates());
+  const auto x = *emitter->sample_position(Vec3(0.5));
+  for (const auto& v : values)
+    EXPECT_NEAR(length(emitter->L_e(x, normalize(v.w)) - v.value), 0, 1e-4) << v.value.x;
+  EXPECT_EQ(luminance(emitter->L_e(x, -normalize(values[0].w))), 0);
+  EXPECT_THROW(make_spot_emitter(to_world, RGB(4), 35, 20, RGB(-1)), std::domain_error);
+}
+
 }  // namespace
 }  // namespace fogbow

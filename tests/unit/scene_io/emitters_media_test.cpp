@@ -83,6 +83,7 @@ TEST(SpotEmitter, HasTheDefaultsOfMitsuba) {
   const std::string cutoff = R"(<float name="cutoff_angle" value="30"/>)";
   EXPECT_EQ(at(cutoff, 22.4), 1);
   EXPECT_NEAR(at(cutoff + R"(<float name="beam_width" value="10"/>)", 20), 0.5, 1e-12);
+  EXPECT_NEAR(at(R"(<rgb name="texture" value="0.25"/>)", 18), 0.1, 1e-12);
   const std::string error = folder.error("<emitter type=\"spot\">" + cutoff +
                                          R"(<float name="beam_width" value="31"/></emitter>)");
   EXPECT_NE(error.find("2:1: a spot light's beam width"), std::string::npos) << error;
