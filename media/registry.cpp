@@ -114,6 +114,26 @@ Coefficients coefficients(Properties& p) {
   return {sigma_t, albedo};
 }
 
+/// The same extinction wherever a scene may reach, though its albedo varies.
+std::shared_ptr<const Medium> with_varying_albedo(Properties& p, double scale,
+                                                  std::shared_ptr<const Volume> albedo,
+                                                  std::shared_ptr<const PhaseFunction> phase) {
+  for (const char* name : {"sigma_s", "sigma_a", "albedo", "emission"})
+    if (p.has(name))
+      p.fail(name, "\"" + std::string(name) + "\" does not go with an albedo that is a volume");
+  const Bounds& box = albedo->bounds();
+  constexpr double kFarBeyond = 0x1p40;
+  const double reach =
+      kFarBeyond * std::max(max_component(glm::abs(box.lo)), max_component(glm::abs(box.hi)));
+  HeterogeneousSettings s;
+  s.scale = scale;
+  s.sigma_t =
+      std::make_shared<Volume>(p.color("sigma_t", RGB(1)), Transform::scale(Vec3(2 * reach)) *
+                                                               Transform::translate(Vec3(-0.5)));
+  s.albedo = std::move(albedo);
+  return make_heterogeneous_medium(s, std::move(phase), p.id());
+}
+
 /// `scale` multiplies sigma_t alone. `emission` is ours (Mitsuba 3.9.1 has none): emitted radiance
 /// per unit length, not scaled.
 std::shared_ptr<const Medium> homogeneous(Properties& p) {
@@ -121,13 +141,15 @@ std::shared_ptr<const Medium> homogeneous(Properties& p) {
     p.fail("material", "\"material\" is not supported yet: give \"sigma_t\" and \"albedo\"");
   const double scale = p.number("scale", 1);
   if (!(scale >= 0)) p.fail("scale", "\"scale\" must not be negative");
-  const auto [sigma_t, albedo] = coefficients(p);
-  const RGB emission = p.color("emission", RGB(0));
   // How Mitsuba samples; it changes no picture.
   p.boolean("sample_emitters", true);
   p.boolean("has_spectral_extinction", true);
   auto phase = p.take_one<PhaseFunction>();
   if (!phase) phase = make_isotropic_phase();
+  if (auto albedo = p.take<Volume>("albedo"))
+    return with_varying_albedo(p, scale, std::move(albedo), std::move(phase));
+  const auto [sigma_t, albedo] = coefficients(p);
+  const RGB emission = p.color("emission", RGB(0));
   return make_homogeneous_medium(scale * sigma_t, albedo, std::move(phase), emission, p.id());
 }
 

@@ -26,12 +26,15 @@ FileResolver::FileResolver(const std::string& scene_path, bool sandbox)
     : scene_folder_(fs::path(scene_path).parent_path()), sandbox_(sandbox) {}
 
 void FileResolver::add_folder(const std::string& folder, const SourceLocation& where) {
-  const fs::path path = fs::path(where.file).parent_path() / folder;
-  std::error_code status;
-  if (!fs::is_directory(path, status))
-    throw Error(ErrorKind::InputOutput, where, "there is no folder " + quote(path.string()));
-  check_inside(path, where);
-  folders_.push_back(path);
+  const fs::path beside_file = fs::path(where.file).parent_path() / folder;
+  for (const fs::path& path : {beside_file, scene_folder_ / folder}) {
+    std::error_code status;
+    if (!fs::is_directory(path, status)) continue;
+    check_inside(path, where);
+    folders_.push_back(path);
+    return;
+  }
+  throw Error(ErrorKind::InputOutput, where, "there is no folder " + quote(beside_file.string()));
 }
 
 fs::path FileResolver::resolve(const std::string& name, const SourceLocation& where) const {

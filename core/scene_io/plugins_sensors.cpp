@@ -32,6 +32,7 @@ PerspectiveSettings perspective_settings(Properties& p, const FilmSettings& film
 
 std::shared_ptr<const Sensor> perspective(Properties& p, const FilmSettings& film) {
   PerspectiveSettings s = perspective_settings(p, film);
+  p.positive_number("focus_distance", s.far_clip);  // that of all its projections in Mitsuba
   s.principal_point_offset.x = p.number("principal_point_offset_x", 0);
   s.principal_point_offset.y = p.number("principal_point_offset_y", 0);
   return make_perspective_sensor(s);
@@ -48,6 +49,7 @@ std::shared_ptr<const Sensor> thinlens(Properties& p, const FilmSettings& film) 
 }
 
 std::shared_ptr<const Sensor> orthographic(Properties& p, const FilmSettings& film) {
+  p.positive_number("focus_distance", 1);
   return make_orthographic_sensor(film_and_clips(p, film));
 }
 

@@ -89,6 +89,18 @@ TEST(Path, AddsFoldersToLookInto) {
             0u);
 }
 
+/// As Mitsuba takes it: shared parts name folders as the scenes that include them would.
+TEST(Path, OfAnIncludedFileMayBeTheScenes) {
+  SceneFolder folder;
+  folder.write("far/away/ball.xml", R"(<shape type="sphere"/>)");
+  folder.write("parts/shared.xml",
+               SceneFolder::wrap(R"(<path value="far/away"/><include filename="ball.xml"/>)"));
+  EXPECT_EQ(folder.load(R"(<include filename="parts/shared.xml"/>)").surfaces.size(), 1u);
+  folder.write("parts/shared.xml", SceneFolder::wrap(R"(<path value="nowhere"/>)"));
+  EXPECT_NE(folder.error(R"(<include filename="parts/shared.xml"/>)").find("there is no folder"),
+            std::string::npos);
+}
+
 TEST(Sandbox, KeepsFilesInsideTheScenesFolder) {
   SceneFolder folder;
   folder.write("ball.xml", R"(<shape type="sphere"/>)");

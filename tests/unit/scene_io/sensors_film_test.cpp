@@ -88,7 +88,9 @@ TEST(Perspective, LooksWhereItIsTold) {
   SceneFolder folder;
   const auto scene = load_sensor(folder, R"(<transform name="to_world">
       <lookat origin="1, 2, 3" target="1, 2, -7" up="0, 1, 0"/></transform>
-      <float name="near_clip" value="0.5"/><float name="far_clip" value="20"/>)");
+      <float name="near_clip" value="0.5"/><float name="far_clip" value="20"/>
+      <float name="focus_distance" value="7"/>)");
+  EXPECT_TRUE(folder.warnings.empty()) << "a pinhole has its focus everywhere";
   const Sensor& sensor = *scene.sensor;
   EXPECT_EQ(sensor.sample_position(Vec2(0.5)), Vec3(1, 2, 3));
   const Vec3 axis = sensor.sample_direction(Vec3(1, 2, 3), Vec2(0.5)).w;

@@ -1,8 +1,10 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include <algorithm>
 #include <bit>
 #include <cstring>
 
 #include "core/scene_io/volume_grid.h"
+#include "media/media.h"
 #include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
@@ -103,6 +105,34 @@ TEST_F(VolumeScene, GridsAndConstants) {
       in_shape("<ref name=\"sigma_t\" id=\"v\"/><ref name=\"albedo\" "
                "id=\"v\"/>"));
   EXPECT_EQ(shared.surfaces[0].interior->sigma_s(Vec3(0.5)), RGB(0.25));
+}
+
+/// Mitsuba's homogeneous medium takes a volume for its albedo alone; its extinction has no end.
+TEST_F(VolumeScene, AlbedoOfAHomogeneousMedium) {
+  std::vector<float> values = kValues;
+  for (float& v : values) v /= *std::ranges::max_element(kValues);
+  folder_.write("smoke.vol", vol_file(1, values));
+  const auto body = [](const std::string& properties) {
+    return "<shape type=\"cube\"><medium type=\"homogeneous\" name=\"interior\">" + properties +
+           "</medium></shape>";
+  };
+  const std::string sigma_t =
+      R"(<rgb name="sigma_t" value="1, 2, 4"/><float name="scale" value="2"/>)";
+  const auto m = folder_.load(body(sigma_t + grid("albedo"))).surfaces.at(0).interior;
+  EXPECT_TRUE(folder_.warnings.empty());
+  const auto albedo = load(grid("albedo"));  // of a heterogeneous one with sigma_t = 1
+  for (const Vec3& p : {Vec3(0.25, 0.5, 0.9), Vec3(0.75, 0.5, 0.1)}) {
+    EXPECT_EQ(m->sigma_t(p), RGB(2, 4, 8));
+    EXPECT_NEAR(length(m->sigma_s(p) - albedo->sigma_s(p) * RGB(2, 4, 8)), 0, 1e-12);
+  }
+  EXPECT_EQ(m->sigma_t(Vec3(-700, 20, 3)), RGB(2, 4, 8));
+  // Across the whole scene.
+  const auto plain = make_homogeneous_medium(RGB(2, 4, 8), RGB(0.5), make_isotropic_phase());
+  const Ray ray{Vec3(-0.3, 0.2, 0.4), normalize(Vec3(1, 0.5, 0.2)), 0, kInfinity};
+  EXPECT_NEAR(length(m->optical_depth(ray, 0, 1.75) - plain->optical_depth(ray, 0, 1.75)), 0, 1e-9);
+  EXPECT_NE(folder_.error(body(sigma_t + grid("albedo") + R"(<rgb name="emission" value="1"/>)"))
+                .find("\"emission\" does not go with an albedo that is a volume"),
+            std::string::npos);
 }
 
 TEST_F(VolumeScene, WhereTheGridIs) {
