@@ -64,7 +64,8 @@ std::vector<Demand> demands(const Tiles& pilot, const Bias& bias, const Rigour& 
   double b = 0;
   for (const auto& [configuration, values] : pilot.classes) b += estimate(values).mean;
   for (const auto& [configuration, values] : pilot.classes)
-    if (const Estimate e = estimate(values); e.mean > kNotableClass * b)
+    if (const Estimate e = estimate(values);
+        configuration != kOtherClasses && e.mean > kNotableClass * b)
       add(configuration, e, bias.part, {});
   return result;
 }

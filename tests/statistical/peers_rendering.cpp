@@ -24,8 +24,11 @@ double shadow_ray_excess(const Path& path) {
   return std::expm1(skipped * max_component(x1.medium->sigma_t(x1.position())));
 }
 
-/// As renders by chains name it.
+/// As renders by chains name it; long paths, of which there are too many kinds to keep each, are
+/// among the others.
 std::string configuration_text(const Path& path) {
+  constexpr std::size_t kLongest = 12;
+  if (path.size() > kLongest) return kOtherClasses;
   PathClass c{static_cast<int>(path.size()), 0};
   for (std::size_t i = 0; i < path.size() && i < 32; ++i)
     c.c |= std::uint32_t{path[i].in_medium()} << i;

@@ -12,6 +12,8 @@
 
 namespace fogbow::testing {
 
+/// Of classes that are not compared one by one.
+inline constexpr const char* kOtherClasses = "the others";
 inline constexpr int kTile = 16;  // pixels
 inline constexpr int kBlock = 4;  // tiles
 

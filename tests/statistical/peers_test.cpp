@@ -142,7 +142,7 @@ void expect_equal_classes(const std::string& name, const Tiles& ours, const Tile
       const auto known = bdpt.classes.find(configuration);
       const bool alone =
           known != bdpt.classes.end() && estimate(known->second).mean > kComparedClass * b;
-      auto& sums = compared[alone ? configuration : "the others"][side];
+      auto& sums = compared[alone ? configuration : kOtherClasses][side];
       sums.resize(values.size());
       for (std::size_t r = 0; r < values.size(); ++r) sums[r] += values[r];
     }
@@ -155,7 +155,7 @@ void expect_equal_classes(const std::string& name, const Tiles& ours, const Tile
     EXPECT_GT(p, kLevel) << name << ", " << configuration << ": " << x.mean << " ± "
                          << x.standard_error << " against " << y.mean << " ± " << y.standard_error;
     least = std::min(least, p);
-    if (y.mean < kNotableClass * b || configuration == "the others") continue;
+    if (y.mean < kNotableClass * b || configuration == kOtherClasses) continue;
     const double seen = power(x, y, bias.part * y.mean, kLevel);
     EXPECT_GE(seen, kPower) << name << ", " << configuration << ": standard errors "
                             << x.standard_error / y.mean << ", " << y.standard_error / y.mean;
