@@ -17,7 +17,7 @@ namespace {
 
 constexpr int kMaxDepth = 7;
 constexpr std::uint64_t kSamples = 1 << 14;
-constexpr int kPerConfiguration = 12;
+constexpr int kPerConfiguration = 24;
 /// Finite differences that are known so well can tell right from wrong.
 constexpr double kSharp = 1e-2;
 
