@@ -109,9 +109,7 @@ std::shared_ptr<Emitter> make_area_emitter(std::shared_ptr<const Shape> shape,
                                            const Textured<RGB>& radiance) {
   if (radiance.constant())
     return std::make_shared<UniformAreaLight>(std::move(shape), radiance.mean());
-  if (!(radiance.range().least >= 0) || !std::isfinite(radiance.range().greatest))
-    throw std::domain_error("what an emitter radiates must be finite and not negative");
-  return std::make_shared<TexturedAreaLight>(std::move(shape), radiance);
+  return std::make_shared<TexturedAreaLight>(std::move(shape), require_radiance(radiance));
 }
 
 }  // namespace fogbow

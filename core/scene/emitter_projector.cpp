@@ -2,6 +2,7 @@
 #include <stdexcept>
 
 #include "core/scene/brightness_grid.h"
+#include "core/scene/emitter_radiance.h"
 #include "core/scene/emitters.h"
 #include "core/scene/perspective_projection.h"
 #include "core/scene/point_light.h"
@@ -80,11 +81,10 @@ class ProjectorEmitter final : public PointLight {
 std::shared_ptr<Emitter> make_projector_emitter(const Textured<RGB>& irradiance,
                                                 const Transform& to_world, double fov_x_degrees,
                                                 double scale) {
-  const Texture::Range range = irradiance.range();
-  if (!(range.least >= 0) || !std::isfinite(range.greatest) || !(scale > 0) ||
-      !std::isfinite(scale))
+  if (!(scale > 0) || !std::isfinite(scale))
     throw std::domain_error("what an emitter radiates must be finite and not negative");
-  return std::make_shared<ProjectorEmitter>(irradiance, to_world, fov_x_degrees, scale);
+  return std::make_shared<ProjectorEmitter>(require_radiance(irradiance), to_world, fov_x_degrees,
+                                            scale);
 }
 
 }  // namespace fogbow

@@ -3,6 +3,7 @@
 #include <stdexcept>
 
 #include "core/math/vec.h"
+#include "core/scene/texture.h"
 
 namespace fogbow {
 
@@ -10,6 +11,12 @@ namespace fogbow {
 inline RGB require_radiance(const RGB& radiance) {
   if (!is_finite(radiance) || radiance.x < 0 || radiance.y < 0 || radiance.z < 0)
     throw std::domain_error("what an emitter radiates must be finite and not negative");
+  return radiance;
+}
+inline const Textured<RGB>& require_radiance(const Textured<RGB>& radiance) {
+  const Texture::Range range = radiance.range();
+  require_radiance(RGB(range.least));
+  require_radiance(RGB(range.greatest));
   return radiance;
 }
 

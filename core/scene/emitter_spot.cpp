@@ -30,10 +30,7 @@ class SpotEmitter final : public PointLight {
 
   /// A picture to shine through, that spans the cone on a plane across the axis.
   void insert(const Textured<RGB>& slide, const Vec3& u, const Vec3& v) {
-    const Texture::Range range = slide.range();
-    if (!(range.least >= 0) || !std::isfinite(range.greatest))
-      throw std::domain_error("what an emitter radiates must be finite and not negative");
-    slide_ = slide;
+    slide_ = require_radiance(slide);
     u_ = normalize(u);
     v_ = normalize(v);
   }

@@ -33,7 +33,7 @@ struct Effort {
   double power;           ///< at least, to detect a bias of the picture's mean by 1%
 };
 Effort effort(const Sampler& sampler) {
-  if (!is_long()) return {0.4, 0.015, 0};
+  if (!is_long()) return {1, 0.01, 0};
   if (sampler.price != Sampler::Price::kCheap) return {8, 0.003, 0};
   return {50, 0.003, 0.99};
 }

@@ -55,9 +55,10 @@ struct Tiles {
 struct Pictures {
   Tiles all, by_light;
 };
-/// So many samples for each pixel of a block in every replicate, or in each block. `classified`:
-/// with excess, classes and by_light, which need every path in one piece; the path tracer has none.
+/// Of the pixels of a block, in every replicate.
 using SamplesPerPixel = std::function<int(std::size_t block)>;
+/// `classified`: with excess, classes and by_light, which need every path in one piece; the path
+/// tracer has none.
 Pictures render_tiles(const Scene& scene, const Estimator& estimator, bool classified,
                       int replicates, const SamplesPerPixel& samples, std::uint64_t seed);
 struct ChainOptions {

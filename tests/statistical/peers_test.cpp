@@ -8,7 +8,6 @@
 #include <cstdlib>
 #include <map>
 #include <numeric>
-#include <ranges>
 
 #include "core/estimators/sampling.h"
 #include "core/image/image_io.h"
