@@ -4,6 +4,7 @@
 #include <functional>
 #include <vector>
 
+#include "core/math/discrete_distribution.h"
 #include "mlt/normalization.h"
 #include "mlt/primary_sample.h"
 
@@ -24,13 +25,20 @@ class Bootstrap {
       const BridgeWeight& g = [](const PrimarySample&, double) { return 1.0; });
 
   const Normalization& normalization() const { return normalization_; }
-  /// One of the group's samples, in proportion to its f*: exactly distributed like f*/b once the
-  /// picture is scaled by the mean of the group's samples. Another one for each attempt.
-  PrimarySample start(int group, std::uint64_t chain, std::uint64_t attempt = 0) const;
+  /// The group's sample at this quantile of its f*, in the order of path lengths and places in the
+  /// picture. With u uniform it is exactly distributed like f*/b once the picture is scaled by the
+  /// mean of the group's samples; equidistant u share starts among all parts of the light.
+  PrimarySample start(int group, double u) const;
 
  private:
   struct Sample {
     double f_star = 0, g = 1;
+    std::uint32_t place = 0;
+  };
+  /// Those that carry light, in their order.
+  struct Starts {
+    std::vector<std::uint64_t> samples;
+    DiscreteDistribution law;
   };
   std::uint64_t stream(int group, std::uint64_t sample) const;
   Sample draw(int group, std::uint64_t i, const BridgeWeight& g, PrimarySample& x) const;
@@ -39,7 +47,7 @@ class Bootstrap {
   const PictureImportance& importance_;
   std::uint64_t seed_;
   Normalization normalization_;
-  std::array<std::vector<double>, Film::kGroups> f_star_;
+  std::array<Starts, Film::kGroups> starts_;
 };
 
 }  // namespace fogbow

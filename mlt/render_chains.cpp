@@ -28,7 +28,7 @@ constexpr double kNotableShare = 0.01;
 /// Samples of the bootstrap for one of the pilot.
 constexpr int kSamplesPerPilot = 4;
 /// Steps of every chain between two looks at the clock.
-constexpr std::uint64_t kStepsPerRound = 64;
+constexpr std::uint64_t kStepsPerRound = 32;
 
 double aspect(const FilmSettings& film) {
   const auto [width, height] = rendered_size(film);
@@ -42,20 +42,37 @@ std::ostream& operator<<(std::ostream& out, const Vec3& v) {
   return out << '(' << v.x << ", " << v.y << ", " << v.z << ')';
 }
 
+/// Where a chain may start. The first attempts of a group's chains are one systematic sample of its
+/// bootstrap: no part of the light gets more or fewer chains than its due by chance. Further ones
+/// are drawn from all of it, so that refusals, too, shift nothing between the parts.
+struct StartOfChain {
+  const Bootstrap& bootstrap;
+  std::uint64_t seed;
+  int chains_per_group;
+  std::uint64_t chain;
+
+  PrimarySample operator()(std::uint64_t attempt) const {
+    const int group = static_cast<int>(chain % Film::kGroups);
+    if (attempt > 0)
+      return bootstrap.start(group, Rng(seed, RngDomain::WarmUp, chain, 4 * attempt).uniform());
+    Rng offset(seed, RngDomain::WarmUp, static_cast<std::uint64_t>(group), 1);
+    const auto rank = static_cast<double>(chain / Film::kGroups);
+    return bootstrap.start(group, (rank + offset.uniform()) / chains_per_group);
+  }
+};
+
 /// What the chains of an integrator are made of; starts and readers of saved states.
 struct PrimarySampleChains {
   using State = PrimarySample;
   MutationTable<State> table;
 
   PrimarySampleChains(const Scene&, const RenderSettings& settings, const Estimator& estimator,
-                      const Pilot&, std::uint64_t)
+                      const Pilot&)
       : table(make_primary_sample_mutations(estimator, settings.large_step_probability)) {}
   double weight(const Mutation<State>& mutation) const {
     return mutation.selection_weight(State());
   }
-  State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
-    return bootstrap.start(group, chain);
-  }
+  State start(const StartOfChain& start) const { return start(0); }
   /// log f*/p of the state that a chain would start from if the bootstrap gave it `x`.
   double log_ratio(const PrimarySample& x, double) const { return x.log_f_star(); }
 };
@@ -65,25 +82,21 @@ struct PathChains {
   static constexpr std::uint64_t kMostAttempts = 1000;
   const Scene& scene;
   int max_vertices;
-  std::uint64_t seed;
   MutationWeights weights;
   TechniqueDistribution techniques;
   MutationTable<State> table;
 
-  PathChains(const Scene& s, const RenderSettings& settings, const Estimator&, const Pilot& pilot,
-             std::uint64_t seed_)
+  PathChains(const Scene& s, const RenderSettings& settings, const Estimator&, const Pilot& pilot)
       : scene(s),
         max_vertices(settings.max_depth + 1),
-        seed(seed_),
         weights(settings.mutations),
         techniques(pilot.techniques, max_vertices),
         table(make_path_mutations(settings.mutations, techniques, max_vertices)) {}
   double weight(const Mutation<State>& mutation) const { return weights.at(mutation.name()); }
-  State start(const Bootstrap& bootstrap, int group, std::uint64_t chain) const {
+  State start(const StartOfChain& start) const {
     for (std::uint64_t attempt = 0;; ++attempt) {
-      Rng rng(seed, RngDomain::WarmUp, chain, 4 * attempt + 2);
-      auto x = PathSample::choose(scene, max_vertices, bootstrap.start(group, chain, attempt),
-                                  rng.uniform());
+      Rng rng(start.seed, RngDomain::WarmUp, start.chain, 4 * attempt + 2);
+      auto x = PathSample::choose(scene, max_vertices, start(attempt), rng.uniform());
       if (x) return *std::move(x);
       FOGBOW_CHECK(attempt < kMostAttempts);
     }
@@ -110,7 +123,7 @@ struct ChainRender {
       : estimator(make_estimator(scene, settings)),
         pilot(run_pilot(*estimator, aspect(scene.film()), seed,
                         settings.bootstrap_samples / kSamplesPerPilot)),
-        chains(scene, settings, *estimator, pilot, seed),
+        chains(scene, settings, *estimator, pilot),
         bridge(pilot.f_star),
         bootstrap(
             *estimator, seed, std::max(1, settings.bootstrap_samples / Film::kGroups),
@@ -118,8 +131,8 @@ struct ChainRender {
             [this](const PrimarySample& x, double u) { return bridge(chains.log_ratio(x, u)); }),
         ensemble(
             chains.table, seed, settings.chains_per_group,
-            [this](int group, std::uint64_t chain) {
-              return chains.start(bootstrap, group, chain);
+            [this, seed, n = settings.chains_per_group](int, std::uint64_t chain) {
+              return chains.start({bootstrap, seed, n, chain});
             },
             bridge) {}
 

@@ -21,7 +21,7 @@ struct RenderSettings {
   MutationWeights mutations = default_mutation_weights();  ///< mlt
   /// Chains share their time for the least relative error, not in proportion to luminance.
   bool two_stage = true;
-  int chains_per_group = 32;
+  int chains_per_group = 256;
   int bootstrap_samples = 1 << 16;
   double samples_per_pixel = 64;  ///< where neither time nor samples are asked for
   std::vector<std::string> notes;

@@ -42,12 +42,13 @@ struct Mixture {
   double seconds = 0;
 
   void run(const Bootstrap& bootstrap, const Scene& scene, int chains, int steps) {
-    const std::clock_t start = std::clock();
+    const std::clock_t begun = std::clock();
     for (int c = 0; c < chains; ++c) {
       const std::uint64_t stream = means.size();
       Rng choice(kSeed, RngDomain::WarmUp, stream, 2);
+      const double start = choice.uniform();
       auto x = PathSample::choose(scene, kVertices,
-                                  bootstrap.start(static_cast<int>(stream % Film::kGroups), stream),
+                                  bootstrap.start(static_cast<int>(stream % Film::kGroups), start),
                                   choice.uniform());
       Chain<PathSample> chain(x.value(), table);
       double sum = 0;
@@ -58,7 +59,7 @@ struct Mixture {
       }
       means.push_back(sum / steps);
     }
-    seconds += static_cast<double>(std::clock() - start) / CLOCKS_PER_SEC;
+    seconds += static_cast<double>(std::clock() - begun) / CLOCKS_PER_SEC;
   }
 
   /// In µs of CPU time; prints.

@@ -96,7 +96,7 @@ constexpr double kMostSeconds = 10;
 
 void mutate_samples(benchmark::State& state, const Estimator& estimator) {
   const auto table = make_primary_sample_mutations(estimator, 0.3);
-  Chain<PrimarySample> chain(Bootstrap(estimator, kSeed, 2048).start(0, 0), table);
+  Chain<PrimarySample> chain(Bootstrap(estimator, kSeed, 2048).start(0, 0.5), table);
   mutate(state, table, chain);
 }
 

@@ -21,10 +21,10 @@ struct PathChain {
   PathChain(const Scene& scene, const Estimator& bdpt)
       : techniques(run_pilot(bdpt, 1, kSeed, 1 << 14).techniques, kMaxDepth + 1),
         table(make_path_mutations(default_mutation_weights(), techniques, kMaxDepth + 1)),
-        chain(
-            PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0), 0.5)
-                .value(),
-            table) {}
+        chain(PathSample::choose(scene, kMaxDepth + 1, Bootstrap(bdpt, kSeed, 2048).start(0, 0.5),
+                                 0.5)
+                  .value(),
+              table) {}
 };
 
 }  // namespace fogbow

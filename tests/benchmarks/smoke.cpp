@@ -77,7 +77,7 @@ struct Subject {
         bdpt(make_bdpt(scene, {.seen_light = false})),
         paths(scene, *bdpt),
         table(make_primary_sample_mutations(*bdpt, 0.3)),
-        samples(Bootstrap(*bdpt, PathChain::kSeed, 2048).start(0, 0), table) {}
+        samples(Bootstrap(*bdpt, PathChain::kSeed, 2048).start(0, 0.5), table) {}
 };
 
 /// CPU time a step, in µs.

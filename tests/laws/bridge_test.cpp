@@ -55,7 +55,7 @@ class BridgeLaw : public ::testing::TestWithParam<std::string> {
           table, seed, kChains,
           [&](int group, std::uint64_t chain) {
             Rng rng(seed, RngDomain::Test, chain, 1);
-            return start(bootstrap.start(group, chain), rng.uniform());
+            return start(bootstrap.start(group, rng.uniform()), rng.uniform());
           },
           bridge_);
       Film film(scene_.film(), -36);

@@ -74,14 +74,18 @@ TEST(Serialization, InterruptedRunEndsOnTheSameBits) {
   expect_same_bits_after_interruption<PrimarySample>(
       scene, bootstrap,
       {make_primary_sample_mutations(*estimator, 0.3),
-       [&](int group, std::uint64_t chain) { return bootstrap.start(group, chain); },
+       [&](int group, std::uint64_t chain) {
+         return bootstrap.start(group, (static_cast<double>(chain) + 0.5) / 16);
+       },
        [](std::istream& in) { return PrimarySample::deserialize(in); }});
   const TechniqueDistribution techniques({}, 9);
   expect_same_bits_after_interruption<PathSample>(
       scene, bootstrap,
       {make_path_mutations(default_mutation_weights(), techniques, 9),
        [&](int group, std::uint64_t chain) {
-         return PathSample::choose(scene, 9, bootstrap.start(group, chain), 0.5).value();
+         return PathSample::choose(
+                    scene, 9, bootstrap.start(group, (static_cast<double>(chain) + 0.5) / 16), 0.5)
+             .value();
        },
        [&](std::istream& in) { return PathSample::deserialize(in, scene, 9); }});
 }
@@ -91,14 +95,14 @@ TEST(Serialization, TruncatedStateIsAnError) {
   const auto estimator = make_bdpt(scene, {.max_depth = 4, .seen_light = false});
   const Bootstrap bootstrap(*estimator, 7, 64);
   std::ostringstream out;
-  bootstrap.start(0, 0).serialize(out);
+  bootstrap.start(0, 0.5).serialize(out);
   const std::string all = out.str();
   for (std::size_t length = 0; length < all.size(); length += 7) {
     std::istringstream in(all.substr(0, length));
     EXPECT_THROW(PrimarySample::deserialize(in), Error);
   }
   std::ostringstream path_out;
-  PathSample::choose(scene, 5, bootstrap.start(0, 0), 0.5).value().serialize(path_out);
+  PathSample::choose(scene, 5, bootstrap.start(0, 0.5), 0.5).value().serialize(path_out);
   const std::string path = path_out.str();
   for (std::size_t length = 0; length < path.size(); length += 7) {
     std::istringstream in(path.substr(0, length));
