@@ -34,11 +34,14 @@ class Tracker {
       next.ta = ta;
       next.tb = tb;
       next.steps.clear();
-      if (kind == Volume::BlockKind::Varying)
-        tracking_.cells(at, ta, tb, [&](const Index& cell, double a, double b) {
-          next.steps.template add<kFilter>(tracking_.volume(), cell, a, b);
+      if (kind == Volume::BlockKind::Varying) {
+        const float* samples = tracking_.volume().block_samples(index);
+        tracking_.cells(at, ta, tb, [&](const Index& cell, const Index& i, double a, double b) {
+          const int corner = Volume::sample_index(i[0], i[1], i[2]);
+          next.steps.add({cell, a, b, samples + corner * kChannels}, kChannels);
           return true;
         });
+      }
       return true;
     });
     while (goes_on && first != last) goes_on = add(ring[first++ % kAhead]);
@@ -73,18 +76,18 @@ class Tracker {
   bool add_cell(const CellStep& step) {
     RGB part(0);
     for (int c = 0; c < kChannels; ++c)
-      part[c] = CellDensity<kFilter>(tracking_, step, c).integral(step.ta, step.tb);
+      part[c] = CellDensity<kChannels, kFilter>(tracking_, step, c).integral(step.ta, step.tb);
     if (end_.depth[channel_] + part[channel_] > target_) return end_in_cell(step);
     end_.depth += part;
     return true;
   }
 
   bool end_in_cell(const CellStep& step) {
-    const CellDensity<kFilter> density(tracking_, step, channel_);
+    const CellDensity<kChannels, kFilter> density(tracking_, step, channel_);
     const double t = density.invert(step.ta, step.tb, target_ - end_.depth[channel_]);
     RGB part(0);
     for (int c = 0; c < kChannels; ++c)
-      part[c] = CellDensity<kFilter>(tracking_, step, c).integral(step.ta, t);
+      part[c] = CellDensity<kChannels, kFilter>(tracking_, step, c).integral(step.ta, t);
     return stop(t, part);
   }
 

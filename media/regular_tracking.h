@@ -43,7 +43,7 @@ class RegularTracking {
     }
     return traverse<Volume::kBlock>(first, count, t0, t1, visit);
   }
-  /// The same for the cells of a block, which have the numbers that voxels have.
+  /// The same for the cells of a block: visit(cell, where it is in the block, ta, tb).
   template <class Visit>
   bool cells(const Index& block, double t0, double t1, Visit&& visit) const {
     Index first, count;
@@ -53,7 +53,7 @@ class RegularTracking {
       count[axis] = std::min(Volume::kBlock, volume_.cell_count(axis) - before);
     }
     return traverse<1>(first, count, t0, t1, [&](const Index& i, double ta, double tb) {
-      return visit(Index{first[0] + i[0], first[1] + i[1], first[2] + i[2]}, ta, tb);
+      return visit(Index{first[0] + i[0], first[1] + i[1], first[2] + i[2]}, i, ta, tb);
     });
   }
 
@@ -114,11 +114,11 @@ class RegularTracking {
   Index up_;    ///< 1 where cells are passed upwards, else 0
 };
 
-/// The part of a ray in one cell, and where the cell's corners are.
+/// The part of a ray in one cell, and the cell's first corner in its block.
 struct CellStep {
   RegularTracking::Index cell;
   double ta, tb;
-  std::uint32_t corners[8];  ///< the first alone where values are those of the nearest voxel
+  const float* corner;
 };
 
 /// All of them in one block: a ray leaves each cell but the last through one of the block's inner
@@ -130,22 +130,13 @@ class CellSteps {
   const CellStep* end() const { return steps_ + size_; }
 
   void clear() { size_ = 0; }
-  /// Also asks the memory for the corners, which are far away.
-  template <VolumeFilter kFilter>
-  void add(const Volume& volume, const RegularTracking::Index& cell, double ta, double tb) {
-    CellStep& step = steps_[size_++];
-    step.cell = cell;
-    step.ta = ta;
-    step.tb = tb;
-    const std::uint32_t* x = volume.offsets(0) + cell[0];
-    const std::uint32_t* y = volume.offsets(1) + cell[1];
-    const std::uint32_t* z = volume.offsets(2) + cell[2];
-    for (int i = 0; i < (kFilter == VolumeFilter::Trilinear ? 8 : 1); ++i) {
-      step.corners[i] = x[i & 1] + y[i >> 1 & 1] + z[i >> 2];
+  /// Also asks the memory for the corners, which are far away: those of one z lie side by side.
+  void add(const CellStep& step, int channels) {
+    steps_[size_++] = step;
 #ifdef __GNUC__
-      __builtin_prefetch(volume.voxels() + step.corners[i]);
+    for (const int corner : {0, 3, 4, 7})
+      __builtin_prefetch(step.corner + Volume::kCorners[corner] * channels);
 #endif
-    }
   }
 
  private:
@@ -154,14 +145,14 @@ class CellSteps {
 };
 
 /// One channel of the field in one cell, along the ray.
-template <VolumeFilter kFilter>
+template <int kChannels, VolumeFilter kFilter>
 class CellDensity {
  public:
   CellDensity(const RegularTracking& tracking, const CellStep& step, int channel)
       : tracking_(tracking), cell_(step.cell) {
-    const float* voxels = tracking.volume().voxels() + channel;
     constexpr int kCorners = kFilter == VolumeFilter::Trilinear ? 8 : 1;
-    for (int i = 0; i < kCorners; ++i) v_[i] = voxels[step.corners[i]];
+    for (int i = 0; i < kCorners; ++i)
+      v_[i] = step.corner[Volume::kCorners[i] * kChannels + channel];
   }
 
   double operator()(double t) const {

@@ -2,6 +2,8 @@
 #include "core/scene/volume.h"
 
 #include <algorithm>
+#include <limits>
+#include <map>
 #include <stdexcept>
 #include <string>
 
@@ -11,18 +13,8 @@ namespace fogbow {
 
 namespace {
 
-/// Voxels are kept in bricks of 8³, within which near ones share cache lines: bits of the three
-/// indices in turn.
-constexpr int kBrickBits = 3;
-constexpr int kBrick = 1 << kBrickBits;
 constexpr std::uint64_t kMaxValues = std::uint64_t{1} << 31;
 constexpr std::uint64_t kMaxBlocks = std::uint64_t{1} << 26;
-
-std::uint32_t spread_bits(int i, int axis) {
-  std::uint32_t result = 0;
-  for (int bit = 0; bit < kBrickBits; ++bit) result |= (i >> bit & 1u) << (3 * bit + axis);
-  return result;
-}
 
 Bounds cube_bounds(const Transform& to_world) {
   Bounds b;
@@ -34,7 +26,7 @@ void check(const VoxelData& data) {
   std::uint64_t values = static_cast<std::uint64_t>(data.channels);
   for (const int n : data.size) {
     if (n < 1) throw std::domain_error("a volume needs at least one voxel on each axis");
-    values *= static_cast<std::uint64_t>(n + kBrick);
+    values *= static_cast<std::uint64_t>(n);
     if (values > kMaxValues) throw std::domain_error("a volume has too many voxels");
   }
   if (data.channels != 1 && data.channels != 3)
@@ -54,10 +46,13 @@ Volume::Volume(VoxelData data, const VolumeSettings& settings)
       bounds_(cube_bounds(settings.to_world)),
       size_(data.size) {
   check(data);
-  lay_out(data);
-  make_lattice(data.size, settings.to_world);
-  data = {};
-  make_blocks();
+  for (std::size_t i = 0; i < data.values.size(); ++i) {
+    double& max = max_[static_cast<int>(i % static_cast<std::size_t>(channels_))];
+    max = std::max(max, double(data.values[i]));
+  }
+  if (channels_ == 1) max_ = RGB(max_.x);
+  make_lattice(settings.to_world);
+  make_blocks(data);
 }
 
 Volume::Volume(const RGB& value, const Transform& to_world)
@@ -67,29 +62,6 @@ Volume::Volume(const RGB& value, const Transform& to_world)
       throw std::domain_error("a volume's value is negative or not finite");
   constant_ = true;
   factor_ = max_ = value;
-}
-
-void Volume::lay_out(const VoxelData& data) {
-  std::array<std::uint32_t, 3> bricks, stride;
-  for (int axis = 0; axis < 3; ++axis) bricks[axis] = (size_[axis] + kBrick - 1) / kBrick;
-  stride = {kBrick * kBrick * kBrick, 0, 0};
-  stride[1] = stride[0] * bricks[0];
-  stride[2] = stride[1] * bricks[1];
-  for (int axis = 0; axis < 3; ++axis)
-    for (int i = 0; i < size_[axis]; ++i)
-      layout_[axis].push_back(channels_ *
-                              (i / kBrick * stride[axis] + spread_bits(i % kBrick, axis)));
-  voxels_.assign(std::size_t(stride[2]) * bricks[2] * channels_, 0.0f);
-  const float* next = data.values.data();
-  for (int z = 0; z < size_[2]; ++z)
-    for (int y = 0; y < size_[1]; ++y)
-      for (int x = 0; x < size_[0]; ++x)
-        for (int c = 0; c < channels_; ++c) {
-          const float v = *next++;
-          voxels_[layout_[0][x] + layout_[1][y] + layout_[2][z] + c] = v;
-          max_[c] = std::max(max_[c], double(v));
-        }
-  if (channels_ == 1) max_ = RGB(max_.x);
 }
 
 int Volume::wrapped(int axis, std::int64_t i) const {
@@ -105,9 +77,9 @@ int Volume::wrapped(int axis, std::int64_t i) const {
   return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
 }
 
-void Volume::make_lattice(const std::array<int, 3>& size, const Transform& to_world) {
+void Volume::make_lattice(const Transform& to_world) {
   const Mat4& to_local = to_world.inverse_matrix();
-  const Vec3 scale(size[0], size[1], size[2]);
+  const Vec3 scale(size_[0], size_[1], size_[2]);
   for (int column = 0; column < 3; ++column) to_lattice_[column] = Vec3(to_local[column]) * scale;
   lattice_origin_ = Vec3(to_local[3]) * scale;
   if (filter_ == VolumeFilter::Trilinear) lattice_origin_ -= Vec3(0.5);
@@ -126,87 +98,161 @@ void Volume::make_lattice(const std::array<int, 3>& size, const Transform& to_wo
     count_[axis] = static_cast<int>(cells);
     blocks_[axis] = static_cast<int>(block_count);
     blocks *= static_cast<std::uint64_t>(blocks_[axis]);
-    for (int i = 0; i <= count_[axis]; ++i)
-      offsets_[axis].push_back(layout_[axis][wrapped(axis, std::int64_t{first_[axis]} + i)]);
   }
 }
 
-void Volume::make_blocks() {
+int Volume::samples_of(int axis, int block) const {
+  return std::min(kBlock, count_[axis] - kBlock * block) +
+         (filter_ == VolumeFilter::Trilinear ? 1 : 0);
+}
+
+template <class Visit>
+void Volume::for_samples(const VoxelData& data, const Index& block, Visit&& visit) const {
+  std::size_t voxel[3][kSide];
+  Index n;
+  for (int axis = 0; axis < 3; ++axis) {
+    n[axis] = samples_of(axis, block[axis]);
+    for (int i = 0; i < n[axis]; ++i)
+      voxel[axis][i] = static_cast<std::size_t>(
+          wrapped(axis, std::int64_t{first_[axis]} + kBlock * block[axis] + i));
+  }
+  for (int z = 0; z < n[2]; ++z)
+    for (int y = 0; y < n[1]; ++y)
+      for (int x = 0; x < n[0]; ++x)
+        visit(x, y, z,
+              &data.values[((voxel[2][z] * size_[1] + voxel[1][y]) * size_[0] + voxel[0][x]) *
+                           channels_]);
+}
+
+void Volume::make_blocks(const VoxelData& data) {
+  // Beyond the first and last voxel, blocks are copies of others: of the first on each axis that
+  // has the same voxels.
+  std::array<std::vector<int>, 3> first_like;
+  for (int axis = 0; axis < 3; ++axis) {
+    std::map<std::vector<int>, int> first;
+    for (int b = 0; b < blocks_[axis]; ++b) {
+      std::vector<int> voxels;
+      for (int i = 0; i < samples_of(axis, b); ++i)
+        voxels.push_back(wrapped(axis, std::int64_t{first_[axis]} + kBlock * b + i));
+      first_like[axis].push_back(first.emplace(std::move(voxels), b).first->second);
+    }
+  }
   const std::size_t n = block_index(0, 0, blocks_[2]);
   kinds_.resize(n);
+  block_.resize(n);
   block_max_.resize(n * channels_);
-  parallel_for(blocks_[2], [&](std::int64_t z) {
-    for (int y = 0; y < blocks_[1]; ++y)
-      for (int x = 0; x < blocks_[0]; ++x) make_block(x, y, static_cast<int>(z));
-  });
-  const Vec3 first(first_[0], first_[1], first_[2]);
-  for (int z = 0; z < blocks_[2]; ++z)
+  const auto for_blocks = [&](int z, const auto& visit) {
     for (int y = 0; y < blocks_[1]; ++y)
       for (int x = 0; x < blocks_[0]; ++x)
-        if (kinds_[block_index(x, y, z)] != BlockKind::Empty)
-          for (const Vec3& side : {Vec3(x, y, z), Vec3(x + 1, y + 1, z + 1)})
-            occupied_.extend(first + double(kBlock) * side);
+        visit(Index{x, y, z}, block_index(x, y, z),
+              block_index(first_like[0][x], first_like[1][y], first_like[2][z]));
+  };
+  parallel_for(blocks_[2], [&](std::int64_t z) {
+    for_blocks(static_cast<int>(z), [&](const Index& i, std::size_t block, std::size_t original) {
+      if (block == original) read_block(data, i);
+    });
+  });
+  std::uint32_t varying = 0;
+  const Vec3 first(first_[0], first_[1], first_[2]);
+  for (int z = 0; z < blocks_[2]; ++z)
+    for_blocks(z, [&](const Index& i, std::size_t block, std::size_t original) {
+      const bool copy = block != original;
+      kinds_[block] = kinds_[original];
+      std::copy_n(&block_max_[original * channels_], channels_, &block_max_[block * channels_]);
+      if (kinds_[block] == BlockKind::Varying) block_[block] = copy ? block_[original] : varying++;
+      if (kinds_[block] != BlockKind::Empty)
+        for (const int side : {0, 1})
+          occupied_.extend(first + double(kBlock) * (Vec3(i[0], i[1], i[2]) + double(side)));
+    });
+  if (std::uint64_t{varying} * kSamples * channels_ > kMaxValues)
+    throw std::domain_error("a volume has too many voxels");
+  samples_.resize(std::size_t{varying} * kSamples * channels_);
+  parallel_for(blocks_[2], [&](std::int64_t z) {
+    for_blocks(static_cast<int>(z), [&](const Index& i, std::size_t block, std::size_t original) {
+      if (block != original || kinds_[block] != BlockKind::Varying) return;
+      float* samples = &samples_[std::size_t{block_[block]} * kSamples * channels_];
+      for_samples(data, i, [&](int x, int y, int z_, const float* voxel) {
+        std::copy_n(voxel, channels_, samples + sample_index(x, y, z_) * channels_);
+      });
+    });
+  });
 }
 
-void Volume::make_block(int bx, int by, int bz) {
-  const std::array<int, 3> block{bx, by, bz};
-  std::array<int, 3> begin, end;
-  for (int axis = 0; axis < 3; ++axis) {
-    begin[axis] = first_[axis] + kBlock * block[axis];
-    end[axis] = std::min(begin[axis] + kBlock, first_[axis] + count_[axis]) +
-                (filter_ == VolumeFilter::Trilinear ? 1 : 0);
-  }
-  const std::size_t index = block_index(bx, by, bz);
-  float* max = &block_max_[index * channels_];
+void Volume::read_block(const VoxelData& data, const Index& block) {
+  const std::size_t index = block_index(block[0], block[1], block[2]);
+  std::array<float, 3> lo, hi;
+  lo.fill(std::numeric_limits<float>::max());
+  hi.fill(0);
+  for_samples(data, block, [&](int, int, int, const float* voxel) {
+    for (int c = 0; c < channels_; ++c) {
+      lo[c] = std::min(lo[c], voxel[c]);
+      hi[c] = std::max(hi[c], voxel[c]);
+    }
+  });
   bool uniform = true, empty = true;
   for (int c = 0; c < channels_; ++c) {
-    const auto at = [&](int x, int y, int z) {
-      return voxels_[offsets(0)[x] + offsets(1)[y] + offsets(2)[z] + c];
-    };
-    const float first = at(begin[0], begin[1], begin[2]);
-    float lo = first, hi = first;
-    for (int z = begin[2]; z < end[2]; ++z)
-      for (int y = begin[1]; y < end[1]; ++y)
-        for (int x = begin[0]; x < end[0]; ++x) {
-          lo = std::min(lo, at(x, y, z));
-          hi = std::max(hi, at(x, y, z));
-        }
-    max[c] = hi;
-    uniform &= lo == hi;
-    empty &= hi == 0;
+    block_max_[index * channels_ + c] = hi[c];
+    uniform &= lo[c] == hi[c];
+    empty &= hi[c] == 0;
   }
   kinds_[index] = empty ? BlockKind::Empty : uniform ? BlockKind::Uniform : BlockKind::Varying;
 }
 
-RGB Volume::value(const Vec3& p) const {
-  if (constant_) return factor_;
-  const Vec3 q = lattice_point(p);
-  const int samples = filter_ == VolumeFilter::Trilinear ? 2 : 1;
-  std::uint32_t at[3][2];
-  Vec3 local;
+double Volume::sample(const Index& i, int channel) const {
+  Index block, at;
   for (int axis = 0; axis < 3; ++axis) {
-    const double cell = std::floor(q[axis]);
-    // Beyond that no double tells cells apart.
-    if (!(std::abs(cell) < 1e15)) return RGB(0);
-    local[axis] = q[axis] - cell;
-    const auto c = static_cast<std::int64_t>(cell);
-    const std::int64_t i = c - first_[axis];
-    for (int k = 0; k < samples; ++k)
-      at[axis][k] =
-          i >= 0 && i < count_[axis] ? offsets_[axis][i + k] : layout_[axis][wrapped(axis, c + k)];
+    const int cell = i[axis] - first_[axis];
+    block[axis] = std::min(cell / kBlock, blocks_[axis] - 1);
+    at[axis] = cell - kBlock * block[axis];
   }
+  const std::size_t index = block_index(block[0], block[1], block[2]);
+  return kinds_[index] == BlockKind::Varying
+             ? block_samples(index)[sample_index(at[0], at[1], at[2]) * channels_ + channel]
+             : block_max(index)[channel];
+}
+
+/// corner(i, channel): value of corner i of the cell, of which the first is the nearest voxel's.
+template <class Corner>
+RGB Volume::filtered(const Vec3& local, const Corner& corner) const {
   RGB result(0);
   for (int c = 0; c < channels_; ++c) {
-    const float* voxels = voxels_.data() + c;
-    if (samples == 1) {
-      result[c] = voxels[at[0][0] + at[1][0] + at[2][0]];
+    if (filter_ == VolumeFilter::Nearest) {
+      result[c] = corner(0, c);
       continue;
     }
     double v[8];
-    for (int i = 0; i < 8; ++i) v[i] = voxels[at[0][i & 1] + at[1][i >> 1 & 1] + at[2][i >> 2]];
+    for (int i = 0; i < 8; ++i) v[i] = corner(i, c);
     result[c] = trilinear(v, local.x, local.y, local.z);
   }
   return channels_ == 1 ? RGB(result.x) : result;
+}
+
+RGB Volume::value(const Vec3& p) const {
+  if (constant_) return factor_;
+  const Vec3 q = lattice_point(p), cell = glm::floor(q), local = q - cell;
+  bool tabled = true;
+  Index block, at;
+  for (int axis = 0; axis < 3; ++axis) {
+    // Beyond that no double tells cells apart.
+    if (!(std::abs(cell[axis]) < 1e15)) return RGB(0);
+    const auto i = static_cast<std::int64_t>(cell[axis]) - first_[axis];
+    tabled = tabled && i >= 0 && i < count_[axis];
+    block[axis] = static_cast<int>(i / kBlock);
+    at[axis] = static_cast<int>(i % kBlock);
+  }
+  if (!tabled)
+    return filtered(local, [&](int corner, int c) {
+      Index i;
+      for (int axis = 0; axis < 3; ++axis)
+        i[axis] = wrapped(axis, static_cast<std::int64_t>(cell[axis]) + (corner >> axis & 1));
+      return sample(i, c);
+    });
+  const std::size_t index = block_index(block[0], block[1], block[2]);
+  if (kinds_[index] != BlockKind::Varying)
+    return filtered(local, [&](int, int c) { return block_max(index)[c]; });
+  const float* first = block_samples(index) + sample_index(at[0], at[1], at[2]) * channels_;
+  return filtered(local,
+                  [&](int corner, int c) { return first[kCorners[corner] * channels_ + c]; });
 }
 
 RGB Volume::max_within(const Bounds& box) const {
@@ -235,7 +281,8 @@ RGB Volume::max_within(const Bounds& box) const {
 }
 
 std::size_t Volume::memory_bytes() const {
-  return voxels_.size() * sizeof(float) + block_max_.size() * sizeof(float) + kinds_.size();
+  return (samples_.size() + block_max_.size()) * sizeof(float) +
+         block_.size() * sizeof(std::uint32_t) + kinds_.size();
 }
 
 }  // namespace fogbow

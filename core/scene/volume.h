@@ -68,10 +68,6 @@ class Volume {
   int first_cell(int axis) const { return first_[axis]; }
   int cell_count(int axis) const { return count_[axis]; }
   int block_count(int axis) const { return blocks_[axis]; }
-  /// Where sample i of an axis (i from first_cell to first_cell + cell_count) is in `voxels`: the
-  /// sum over axes.
-  const std::uint32_t* offsets(int axis) const { return offsets_[axis].data() - first_[axis]; }
-  const float* voxels() const { return voxels_.data(); }
 
   /// Around all blocks that are not empty, in lattice coordinates.
   const Bounds& occupied() const { return occupied_; }
@@ -82,13 +78,37 @@ class Volume {
   BlockKind block_kind(std::size_t block) const { return kinds_[block]; }
   /// Largest value of each channel in a block, without the factor.
   const float* block_max(std::size_t block) const { return &block_max_[block * channels_]; }
+  /// The samples of a varying block, x fastest, channels side by side: kBlock + 1 a side, so that
+  /// all corners of its cells are among them.
+  const float* block_samples(std::size_t block) const {
+    return &samples_[std::size_t{block_[block]} * kSamples * channels_];
+  }
+  static constexpr int kSide = kBlock + 1, kSamples = kSide * kSide * kSide;
+  static constexpr int sample_index(int x, int y, int z) { return (z * kSide + y) * kSide + x; }
+  /// Corners of a cell from its first one on: x fastest.
+  static constexpr std::array<int, 8> kCorners{0,
+                                               1,
+                                               kSide,
+                                               kSide + 1,
+                                               kSide* kSide,
+                                               kSide* kSide + 1,
+                                               kSide*(kSide + 1),
+                                               kSide*(kSide + 1) + 1};
 
  private:
-  void lay_out(const VoxelData& data);
-  void make_lattice(const std::array<int, 3>& size, const Transform& to_world);
-  void make_blocks();
-  void make_block(int x, int y, int z);
+  using Index = std::array<int, 3>;
+
+  void make_lattice(const Transform& to_world);
+  void make_blocks(const VoxelData& data);
+  void read_block(const VoxelData& data, const Index& block);
+  /// visit(x, y, z, voxel) for all samples of a block, as sample_index() numbers them.
+  template <class Visit>
+  void for_samples(const VoxelData& data, const Index& block, Visit&& visit) const;
+  int samples_of(int axis, int block) const;
   int wrapped(int axis, std::int64_t i) const;
+  double sample(const Index& i, int channel) const;
+  template <class Corner>
+  RGB filtered(const Vec3& local, const Corner& corner) const;
 
   VolumeFilter filter_;
   VolumeWrap wrap_;
@@ -98,10 +118,9 @@ class Volume {
   Bounds bounds_;
   Mat3 to_lattice_{1.0};
   Vec3 lattice_origin_{0};
-  std::array<int, 3> size_, first_{}, count_{}, blocks_{};
-  std::array<std::vector<std::uint32_t>, 3> layout_;   ///< of voxel i on an axis
-  std::array<std::vector<std::uint32_t>, 3> offsets_;  ///< of sample first_ + i
-  std::vector<float, LargePageAllocator<float>> voxels_;
+  Index size_, first_{}, count_{}, blocks_{};
+  std::vector<float, LargePageAllocator<float>> samples_;
+  std::vector<std::uint32_t> block_;  ///< of samples_, which varying blocks have
   std::vector<float> block_max_;
   std::vector<BlockKind> kinds_;
   Bounds occupied_;

@@ -1,6 +1,8 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <cmath>
 #include <numeric>
 #include <stdexcept>
 
@@ -96,6 +98,72 @@ TEST(Volume, HasTheValuesOfMitsuba) {
                     2e-6 * c.values[i][channel])
             << "point " << i;
   }
+}
+
+/// A number of the lattice for each voxel of an axis, as the wrap modes are defined.
+int voxel(std::int64_t i, int n, VolumeWrap wrap) {
+  while (wrap != Clamp && (i < 0 || i >= n)) {
+    if (wrap == Repeat)
+      i += i < 0 ? n : -n;
+    else
+      i = i < 0 ? -1 - i : 2 * n - 1 - i;
+  }
+  return static_cast<int>(std::clamp<std::int64_t>(i, 0, n - 1));
+}
+
+RGB from_voxels(const VoxelData& data, const VolumeSettings& s, const Vec3& p) {
+  const Vec3 q = s.to_world.inverse().point(p) * Vec3(data.size[0], data.size[1], data.size[2]) -
+                 (s.filter == Trilinear ? 0.5 : 0.0);
+  RGB sum(0);
+  for (int corner = 0; corner < (s.filter == Trilinear ? 8 : 1); ++corner) {
+    double weight = 1;
+    std::size_t index = 0;
+    for (const int axis : {2, 1, 0}) {
+      const int up = corner >> axis & 1;
+      const double cell = std::floor(q[axis]), part = q[axis] - cell;
+      if (s.filter == Trilinear) weight *= up ? part : 1 - part;
+      index = index * data.size[axis] +
+              voxel(static_cast<std::int64_t>(cell) + up, data.size[axis], s.wrap);
+    }
+    for (int c = 0; c < 3; ++c)
+      sum[c] += weight * data.values[index * data.channels + (data.channels == 3 ? c : 0)];
+  }
+  return sum;
+}
+
+/// Empty, uniform and varying blocks, and what lies beyond the voxels where the box is turned.
+TEST(Volume, IsItsVoxelsEverywhere) {
+  Rng rng(testing::suite_seed(), RngDomain::Test, 901, 0);
+  const Transform turned = affine() * Transform::rotate(Vec3(1, 2, 3), 40);
+  for (const int channels : {1, 3}) {
+    VoxelData data{{37, 19, 5}, channels, {}};
+    for (int i = 0; i < 37 * 19 * 5; ++i)
+      for (int c = 0; c < channels; ++c)
+        data.values.push_back(i % 37 < 12   ? 0.0f
+                              : i % 37 < 24 ? 3.0f
+                                            : static_cast<float>(rng.uniform()));
+    for (const VolumeFilter filter : {Trilinear, Nearest})
+      for (const VolumeWrap wrap : {Clamp, Repeat, Mirror}) {
+        const VolumeSettings settings{turned, filter, wrap};
+        const Volume volume(data, settings);
+        for (int i = 0; i < 3000; ++i) {
+          const Vec3 p = turned.point(3.0 * uniform3(rng) - Vec3(1));
+          const RGB ours = volume.value(p), theirs = from_voxels(data, settings, p);
+          for (int c = 0; c < 3; ++c)
+            ASSERT_NEAR(ours[c], theirs[c], 1e-9)
+                << "channels " << channels << ", wrap " << int(wrap) << ", filter " << int(filter);
+        }
+      }
+  }
+}
+
+TEST(Volume, TakesNoMemoryForWhatIsRepeated) {
+  VoxelData data{{256, 256, 1}, 1, {}};
+  Rng rng(testing::suite_seed(), RngDomain::Test, 902, 0);
+  for (int i = 0; i < 256 * 256; ++i) data.values.push_back(static_cast<float>(rng.uniform()));
+  const Transform slab = Transform::rotate(Vec3(1, 1, 0), 45) * Transform::scale(Vec3(1, 1, 0.01));
+  for (const VolumeWrap wrap : {Clamp, Repeat, Mirror})
+    EXPECT_LT(Volume(data, {slab, Trilinear, wrap}).memory_bytes(), std::size_t{1} << 24);
 }
 
 /// The axis-parallel box around the unit cube, as Volume.bbox() has it.
