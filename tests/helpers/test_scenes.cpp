@@ -60,9 +60,10 @@ class Builder {
     return d_.surfaces.emplace_back(std::move(s));
   }
   Builder& bounds(std::shared_ptr<const Shape> shape, BsdfPtr bsdf, MediumPtr interior,
-                  MediumPtr exterior) {
+                  MediumPtr exterior, int priority = 0) {
     Surface& s = add(std::move(shape), std::move(bsdf));
     s.medium_boundary = true;
+    s.priority = priority;
     s.interior = std::move(interior);
     s.exterior = std::move(exterior);
     return *this;
@@ -361,6 +362,19 @@ SceneDescription parallel_rays() {
   return b.done();
 }
 
+/// Volumes that overlap: a ball of glass half in a block of fog, and mist that reaches into both.
+SceneDescription overlapping_volumes() {
+  Builder b;
+  b.floor(gray()).ceiling_light(0.4, RGB(10));
+  b.bounds(make_cube(Transform::translate(Vec3(0, -0.6, 0)) * Transform::scale(Vec3(1, 0.35, 1))),
+           make_null(), fog(RGB(0.9, 0.6, 0.5), RGB(0.6, 0.8, 0.9)), nullptr, 1);
+  b.bounds(sphere(Vec3(-0.35, -0.3, 0.1), 0.4), make_dielectric(1.4), fog(RGB(0.8), RGB(0.95), 0.5),
+           nullptr, 2);
+  b.bounds(sphere(Vec3(0.3, -0.1, 0), 0.5), make_null(), fog(RGB(0.8, 1.1, 1.4), RGB(0.9)),
+           nullptr);
+  return b.done();
+}
+
 }  // namespace
 
 const std::vector<TestScene>& test_scenes() {
@@ -379,7 +393,8 @@ const std::vector<TestScene>& test_scenes() {
                                                 {"two-kinds-of-glass", two_kinds_of_glass},
                                                 {"sun-and-can", sun_and_can},
                                                 {"coatings", coatings},
-                                                {"parallel-rays", parallel_rays}};
+                                                {"parallel-rays", parallel_rays},
+                                                {"overlapping-volumes", overlapping_volumes}};
   return scenes;
 }
 
