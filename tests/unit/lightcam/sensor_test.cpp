@@ -238,6 +238,7 @@ TEST(Sensor, OrthographicPositionsAreATriple) {
       Mat4 stretch(1.0);
       stretch[0] = {3, 0, shear, 0};
       stretch[1] = {0.4 * shear, 2, -shear, 0};
+      stretch[2] = {0, 0, 5, 0};  // along the rays: of no effect
       s.to_world = s.to_world * Transform(stretch);
       const auto sensor = make_orthographic_sensor(s);
       const Vec3 view = normalize(kTarget - kOrigin);
