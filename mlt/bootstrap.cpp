@@ -42,7 +42,8 @@ Bootstrap::Sample Bootstrap::draw(int group, std::uint64_t i, const BridgeWeight
 }
 
 Bootstrap::Bootstrap(const Estimator& estimator, std::uint64_t seed, int samples_per_group,
-                     const PictureImportance& importance, const BridgeWeight& g)
+                     const PictureImportance& importance, const BridgeWeight& g,
+                     double least_effective)
     : estimator_(estimator), importance_(importance), seed_(seed) {
   std::array<std::vector<Sample>, Film::kGroups> samples;
   const auto lit = [](const std::vector<Sample>& group) {
@@ -68,7 +69,10 @@ Bootstrap::Bootstrap(const Estimator& estimator, std::uint64_t seed, int samples
     for (std::size_t task = 0; task < sums.size(); ++task)
       normalization_.add(static_cast<int>(task % Film::kGroups), sums[task]);
     done = size;
-    if (std::ranges::all_of(samples, lit)) break;
+    const bool all_lit = std::ranges::all_of(samples, lit);
+    if (all_lit &&
+        (doubling == kMaxDoublings || normalization_.effective_samples() >= least_effective))
+      break;
     if (doubling == kMaxDoublings)
       throw Error(ErrorKind::NoLight, "no path that carries light was found in " +
                                           std::to_string(size * Film::kGroups) +

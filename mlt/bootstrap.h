@@ -18,11 +18,13 @@ class Bootstrap {
   using BridgeWeight = std::function<double(const PrimarySample& x, double u)>;
 
   /// `samples_per_group` for every group, doubled (up to 64 times as many) until all groups have
-  /// found light. Throws Error(NoLight).
+  /// found light, and all together as much as `least_effective` equal samples know of it. Throws
+  /// Error(NoLight).
   Bootstrap(
       const Estimator& estimator, std::uint64_t seed, int samples_per_group,
       const PictureImportance& importance = kUniformImportance,
-      const BridgeWeight& g = [](const PrimarySample&, double) { return 1.0; });
+      const BridgeWeight& g = [](const PrimarySample&, double) { return 1.0; },
+      double least_effective = 0);
 
   const Normalization& normalization() const { return normalization_; }
   /// The group's sample at this quantile of its f*, in the order of path lengths and places in the

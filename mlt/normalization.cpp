@@ -15,10 +15,11 @@ void BridgeSums::add(const BridgeSums& other) {
   states += other.states;
 }
 
+double BridgeSums::mean() const { return samples == 0 ? 0 : f_star / static_cast<double>(samples); }
+
 double BridgeSums::b() const {
-  if (samples == 0) return 0;
-  const auto n = static_cast<double>(samples);
-  return states > 0 ? sampled / n / (visited / states) : f_star / n;
+  if (samples == 0 || !(states > 0)) return mean();
+  return sampled / static_cast<double>(samples) / (visited / states);
 }
 
 BridgeSums Normalization::all() const {
@@ -29,6 +30,24 @@ BridgeSums Normalization::all() const {
 
 std::uint64_t Normalization::samples() const { return all().samples; }
 
+double Normalization::effective_samples() const {
+  const BridgeSums sums = all();
+  return sums.squares > 0 ? sqr(sums.f_star) / sums.squares : 0;
+}
+
+double Normalization::estimate(const BridgeSums& sums) const {
+  constexpr double kUnsure = 0.1;  // standard error, in parts of b
+  std::array<double, Film::kGroups> bridged, alone;
+  for (int g = 0; g < Film::kGroups; ++g) {
+    bridged[g] = groups_[g].b();
+    alone[g] = groups_[g].mean();
+  }
+  const ReplicateMean by_bridge = replicate_mean(bridged), by_samples = replicate_mean(alone);
+  const bool unsure = !(by_bridge.standard_error < kUnsure * by_bridge.mean);
+  return unsure && !(by_bridge.standard_error <= by_samples.standard_error) ? sums.mean()
+                                                                            : sums.b();
+}
+
 double Normalization::standard_error() const {
   std::array<double, Film::kGroups> groups;
   for (int g = 0; g < Film::kGroups; ++g) groups[g] = b(g);
@@ -36,7 +55,7 @@ double Normalization::standard_error() const {
 }
 
 double Normalization::disagreement() const {
-  const double mean = all().f_star / static_cast<double>(samples());
+  const double mean = all().mean();
   double chi2 = 0;
   for (const BridgeSums& g : groups_) {
     const auto n = static_cast<double>(g.samples);

@@ -50,7 +50,10 @@ struct BridgeSums {
     states += weight;
   }
   void add(const BridgeSums& other);
+  /// Over the bridge, where there are states on its other side.
   double b() const;
+  /// Of the samples alone.
+  double mean() const;
 };
 
 /// b = ∫ f* dμ for each of the independent groups of chains, from the group's own bootstrap,
@@ -58,12 +61,14 @@ struct BridgeSums {
 class Normalization {
  public:
   void add(int group, const BridgeSums& sums) { groups_[group].add(sums); }
-  double b(int group) const { return groups_[group].b(); }
+  double b(int group) const { return estimate(groups_[group]); }
   /// Of all groups together.
-  double b() const { return all().b(); }
+  double b() const { return estimate(all()); }
   /// Of b(), from the spread between groups.
   double standard_error() const;
   std::uint64_t samples() const;
+  /// Equal samples that would know the mean of f*/p as well: (Σ f*/p)² / Σ (f*/p)².
+  double effective_samples() const;
   /// χ² with kGroups − 1 degrees of freedom of the groups' sample means of f*/p against the errors
   /// that each group states for itself.
   double disagreement() const;
@@ -72,6 +77,9 @@ class Normalization {
   static Normalization deserialize(std::istream& in);
 
  private:
+  /// By the bridge, unless its groups say next to nothing and those of the samples say more: few
+  /// states may be found where samples and chains meet.
+  double estimate(const BridgeSums& sums) const;
   BridgeSums all() const;
 
   std::array<BridgeSums, Film::kGroups> groups_{};

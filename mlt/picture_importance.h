@@ -38,6 +38,7 @@ class PictureImportance {
   PictureImportance(const PictureGrid& grid, std::span<const double> luminance);
 
   double operator()(const Vec2& raster) const { return cells_[grid_.cell(raster)]; }
+  double least() const { return *std::ranges::min_element(cells_); }
 
  private:
   PictureGrid grid_;

@@ -13,6 +13,7 @@ namespace fogbow {
 namespace {
 
 constexpr std::uint64_t kBlock = 1024;
+constexpr int kMaxDoublings = 6;
 /// Cells of the longer side of the picture; standard deviation of the blur, in cells.
 constexpr int kCells = 64;
 constexpr double kBlur = 2.5;
@@ -58,8 +59,9 @@ void blur(Cells& cells, const PictureGrid& grid) {
 }  // namespace
 
 Pilot run_pilot(const Estimator& estimator, double aspect, std::uint64_t seed,
-                std::uint64_t samples) {
+                std::uint64_t samples, double least_effective) {
   struct Block {
+    double f_star = 0, squares = 0;
     Techniques techniques;
     std::vector<std::pair<std::size_t, double>> lit;  // cell, luminance
   };
@@ -69,18 +71,35 @@ Pilot run_pilot(const Estimator& estimator, double aspect, std::uint64_t seed,
     if (table[k].size() <= s) table[k].resize(s + 1);
     return table[k][s];
   };
-  std::vector<Block> blocks(std::max<std::uint64_t>(1, (samples + kBlock - 1) / kBlock));
-  parallel_for(static_cast<std::int64_t>(blocks.size()), [&](std::int64_t b) {
-    PrimarySample x;
-    for (std::uint64_t i = 0; i < kBlock; ++i) {
-      Rng rng(seed, RngDomain::WarmUp, static_cast<std::uint64_t>(b) * kBlock + i, 1);
-      x.draw(estimator, rng);
-      for (const Contribution& c : x.contributions()) {
-        entry(blocks[b].techniques, c.k, c.s) += luminance(c.value);
-        blocks[b].lit.emplace_back(grid.cell(c.raster), luminance(c.value));
+  std::vector<Block> blocks;
+  const auto draw = [&](std::uint64_t first, std::uint64_t last) {
+    blocks.resize(last);
+    parallel_for(static_cast<std::int64_t>(last - first), [&](std::int64_t task) {
+      const std::uint64_t b = first + static_cast<std::uint64_t>(task);
+      PrimarySample x;
+      for (std::uint64_t i = 0; i < kBlock; ++i) {
+        Rng rng(seed, RngDomain::WarmUp, b * kBlock + i, 1);
+        x.draw(estimator, rng);
+        blocks[b].f_star += x.f_star();
+        blocks[b].squares += sqr(x.f_star());
+        for (const Contribution& c : x.contributions()) {
+          entry(blocks[b].techniques, c.k, c.s) += luminance(c.value);
+          blocks[b].lit.emplace_back(grid.cell(c.raster), luminance(c.value));
+        }
       }
+    });
+  };
+  const auto effective = [&] {
+    double sum = 0, squares = 0;
+    for (const Block& block : blocks) {
+      sum += block.f_star;
+      squares += block.squares;
     }
-  });
+    return squares > 0 ? sqr(sum) / squares : 0;
+  };
+  draw(0, std::max<std::uint64_t>(1, (samples + kBlock - 1) / kBlock));
+  for (int doubling = 0; doubling < kMaxDoublings && effective() < least_effective; ++doubling)
+    draw(blocks.size(), 2 * blocks.size());
 
   // Blocks are summed in their order: no number of threads changes the result.
   Pilot pilot;

@@ -16,8 +16,9 @@ struct Pilot {
   double f_star = 0;  ///< about b, with this importance
 };
 
-/// `aspect`: width over height of the picture.
+/// `aspect`: width over height of the picture. `samples` are doubled (up to 64 times as many) until
+/// they know as much of the light as `least_effective` equal ones.
 Pilot run_pilot(const Estimator& estimator, double aspect, std::uint64_t seed,
-                std::uint64_t samples);
+                std::uint64_t samples, double least_effective = 0);
 
 }  // namespace fogbow

@@ -11,14 +11,21 @@ namespace fogbow {
 
 namespace {
 
-/// Whether there are paths from Dirac positions or directions on which no two neighbouring vertices
-/// scatter smoothly: no technique samples them.
-bool has_unreachable_classes(const Scene& scene) {
+/// The light that no technique of an integrator samples; empty where there is none such.
+std::string unreachable_light(const Scene& scene, const std::string& integrator) {
   bool dirac_lights = false;
   for (std::size_t i = 0; i < scene.emitter_count(); ++i)
     dirac_lights |= is_dirac(scene.emitter(i).kind());
-  return dirac_lights && std::ranges::any_of(scene.surfaces(),
-                                             [](const Surface& s) { return s.bsdf->has_dirac(); });
+  const bool specular =
+      std::ranges::any_of(scene.surfaces(), [](const Surface& s) { return s.bsdf->has_dirac(); });
+  if (!specular) return {};
+  if (integrator == "light") return "what is seen through specular surfaces";
+  if (!dirac_lights) return {};
+  const std::string such =
+      "light from point or directional lights that goes through specular surfaces";
+  if (integrator == "path") return such;
+  return such +
+         " and is seen through specular surfaces, with no two other vertices next to each other,";
 }
 
 void finish(RenderResult& result, const Scene& scene, const Session& session,
@@ -30,11 +37,8 @@ void finish(RenderResult& result, const Scene& scene, const Session& session,
   result.cpu_seconds = session.cpu_seconds();
   result.rays = session.rays();
   result.notes.insert(result.notes.begin(), settings.notes.begin(), settings.notes.end());
-  if (has_unreachable_classes(scene))
-    result.notes.push_back(
-        "light from point or directional lights that goes through specular surfaces and is seen "
-        "through specular "
-        "surfaces, with no two other vertices next to each other, is not sampled");
+  if (const std::string light = unreachable_light(scene, settings.integrator); !light.empty())
+    result.notes.push_back(light + " is not sampled by " + settings.integrator);
   if (!settings.depth_capped || result.lengths.empty()) return;
   const ClassShare& last = result.lengths.back();
   const double cut = last.k == settings.max_depth + 1 ? last.value : 0;
@@ -56,6 +60,13 @@ std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettin
   if (settings.integrator == "light") return make_light_tracer(scene, s);
   s.seen_light = !settings.uses_chains();
   return make_bdpt(scene, s);
+}
+
+int least_film_exponent(const Scene& scene) {
+  constexpr int kFractionBits = 46;
+  // Power through the sphere around the scene, as radiance.
+  const double radiance = scene.emitter_distribution().total() / sqr(2 * kPi * scene.radius());
+  return radiance > 0 ? std::ilogb(radiance) - kFractionBits : 0;
 }
 
 PictureScale PictureScale::of_samples(std::uint64_t samples) {

@@ -18,8 +18,12 @@ namespace fogbow {
 
 namespace {
 
-/// Fraction bits of the chains' film: an expected-value splat is of the order of one.
-constexpr int kChainFilmExponent = -36;
+/// One count of the chains' film is 2 to this: expected-value splats are of the order of one over
+/// the importance, and all of a long render may fall on one pixel.
+int chain_film_exponent(const PictureImportance& importance) {
+  constexpr int kFractionBits = 32;
+  return std::ilogb(1 / importance.least()) - kFractionBits;
+}
 /// Standard error of b between groups, relative to b, above which the groups are said to disagree:
 /// the picture's brightness is then anyone's guess.
 constexpr double kDisagreement = 0.1;
@@ -27,6 +31,8 @@ constexpr double kDisagreement = 0.1;
 constexpr double kNotableShare = 0.01;
 /// Samples of the bootstrap for one of the pilot.
 constexpr int kSamplesPerPilot = 4;
+/// Of the bootstrap: where a few samples hold all the light that was found, most was not.
+constexpr double kEffectiveSamples = 128;
 /// Steps of every chain between two looks at the clock.
 constexpr std::uint64_t kStepsPerRound = 32;
 
@@ -122,13 +128,15 @@ struct ChainRender {
   ChainRender(const Scene& scene, const RenderSettings& settings, std::uint64_t seed)
       : estimator(make_estimator(scene, settings)),
         pilot(run_pilot(*estimator, aspect(scene.film()), seed,
-                        settings.bootstrap_samples / kSamplesPerPilot)),
+                        settings.bootstrap_samples / kSamplesPerPilot,
+                        kEffectiveSamples / kSamplesPerPilot)),
         chains(scene, settings, *estimator, pilot),
         bridge(pilot.f_star),
         bootstrap(
             *estimator, seed, std::max(1, settings.bootstrap_samples / Film::kGroups),
             settings.two_stage ? pilot.importance : kUniformImportance,
-            [this](const PrimarySample& x, double u) { return bridge(chains.log_ratio(x, u)); }),
+            [this](const PrimarySample& x, double u) { return bridge(chains.log_ratio(x, u)); },
+            kEffectiveSamples),
         ensemble(
             chains.table, seed, settings.chains_per_group,
             [this, seed, n = settings.chains_per_group](int, std::uint64_t chain) {
@@ -265,7 +273,7 @@ RenderResult render_by(const Scene& scene, const RenderOptions& options,
                        const RenderSettings& settings, Session& session) {
   session.announce("bootstrap");
   ChainRender<Chains> r(scene, settings, options.seed);
-  Film film(scene.film(), kChainFilmExponent);
+  Film film(scene.film(), chain_film_exponent(r.pilot.importance));
   SeenLightPicture seen(scene, settings, options.seed, r.pilot.f_star);
   session.begin_rendering();
 
@@ -339,7 +347,7 @@ template <class Chains>
 std::string replay_by(const Scene& scene, const RenderSettings& settings, std::uint64_t seed,
                       std::uint64_t chain, std::uint64_t step) {
   ChainRender<Chains> r(scene, settings, seed);
-  Film film(scene.film(), kChainFilmExponent);
+  Film film(scene.film(), chain_film_exponent(r.pilot.importance));
   SplatQueue unseen(film);
   while (r.ensemble.chain(chain).steps() < step) r.ensemble.step(chain, unseen);
 

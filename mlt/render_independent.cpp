@@ -7,16 +7,10 @@ namespace {
 
 /// Fraction bits of the other films below the mean luminance.
 constexpr int kRadianceFractionBits = 30;
-/// And at most below what the emitters' power makes on average: where the first samples see next to
-/// nothing, the next may see ordinary light.
-constexpr int kPowerFractionBits = 46;
-
 /// One count of the film is 2 to this.
 int film_exponent(const Scene& scene, const Estimator& estimator, std::uint64_t seed) {
-  // Power through the sphere around the scene, as radiance.
-  const double radiance = scene.emitter_distribution().total() / sqr(2 * kPi * scene.radius());
   return std::max(luminance_exponent(estimator, seed) - kRadianceFractionBits,
-                  std::ilogb(radiance) - kPowerFractionBits);
+                  least_film_exponent(scene));
 }
 
 }  // namespace

@@ -14,6 +14,10 @@ namespace fogbow {
 /// light.
 std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettings& settings);
 
+/// Of a film of radiances, by what the emitters' power makes on average: where the first samples
+/// see next to nothing, or nothing, the next may see ordinary light.
+int least_film_exponent(const Scene& scene);
+
 /// Factors by which sums estimate the whole picture: those of all groups together, and for its
 /// error those of each group alone.
 struct PictureScale {

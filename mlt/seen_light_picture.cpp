@@ -42,7 +42,9 @@ SeenLightPicture::SeenLightPicture(const Scene& scene, const RenderSettings& set
   s.hide_emitters = settings.hide_emitters;
   estimator_ = make_seen_light(scene, s);
   const double mean = std::max(b, mean_luminance(*estimator_, seed));
-  sampling_.emplace(*estimator_, scene.film(), seed, std::ilogb(mean) + 1 - kFractionBits);
+  const int least = least_film_exponent(scene);
+  sampling_.emplace(*estimator_, scene.film(), seed,
+                    mean > 0 ? std::max(std::ilogb(mean) + 1 - kFractionBits, least) : least);
 }
 
 void SeenLightPicture::keep_up(std::uint64_t mutations) {

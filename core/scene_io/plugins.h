@@ -29,6 +29,9 @@ struct FileContext {
   const FileResolver& files;
   ContentHash& hash;
   bool repair = false;  ///< meshes, whether or not they ask for it
+  /// By the instance that shows the shape, not by the shape's own "to_world": outside stays
+  /// outside.
+  bool mirrored = false;
   /// Is told what was done.
   std::function<void(const std::string&)> repaired = {};
 };

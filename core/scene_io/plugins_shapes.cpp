@@ -13,7 +13,7 @@ namespace {
 
 constexpr std::uint64_t kMaxMeshBytes = std::uint64_t{8} << 30;
 
-std::shared_ptr<const Shape> sphere(Properties& p, const FileContext&) {
+std::shared_ptr<const Shape> sphere(Properties& p, const FileContext& context) {
   const Vec3 center = p.point("center", Vec3(0));
   const double radius = p.positive_number("radius", 1);
   const Transform to_world = p.transform("to_world");
@@ -21,8 +21,9 @@ std::shared_ptr<const Shape> sphere(Properties& p, const FileContext&) {
   if (!(scale > 0))
     p.fail("to_world", "a sphere's \"to_world\" must scale alike in all directions");
   const bool flip = p.boolean("flip_normals", false);
-  // A mirror image shows the inside, as in Mitsuba.
-  return make_sphere(to_world.point(center), scale * radius, flip != to_world.flips_orientation(),
+  // A mirror image shows the inside, as in Mitsuba; a mirrored instance does not.
+  const bool inside_out = to_world.flips_orientation() != context.mirrored;
+  return make_sphere(to_world.point(center), scale * radius, flip != inside_out,
                      scale * Mat3(to_world.inverse_matrix()));
 }
 
@@ -90,7 +91,7 @@ std::shared_ptr<const Shape> mesh_shape(Properties& p, const FileContext& contex
   if (face_normals) mesh.normals.clear();
   to_world_space(mesh, to_world);
   // The front is where the file's normals point, as in Mitsuba, also after a reflection.
-  if (!mesh.normals.empty() && winds_against_normals(mesh)) flip_winding(mesh);
+  if (mesh.normals.empty() ? context.mirrored : winds_against_normals(mesh)) flip_winding(mesh);
   if (p.boolean("repair", false) || context.repair) {
     MeshRepair done;
     mesh = repair_mesh(std::move(mesh), done);

@@ -394,6 +394,7 @@ void SceneBuilder::surface(const XmlNode& node, const Transform* instance) {
   const bool encloses = surface.medium_boundary || (surface.bsdf && surface.bsdf->eta() != 1);
   surface.shape = construct(shape_plugins(), p,
                             FileContext{files_, object.hash, options_.repair && encloses,
+                                        instance && instance->flips_orientation(),
                                         [&](const std::string& what) { repaired(surface, what); }});
   if (const Child* child = object.take_one("emitter")) {
     if (instance)

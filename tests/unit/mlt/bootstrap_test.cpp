@@ -39,5 +39,24 @@ TEST(Bootstrap, StartsAreInProportionToLightAndInOrder) {
   }
 }
 
+TEST(Bootstrap, GoesOnUntilItKnowsEnough) {
+  constexpr std::uint64_t kSamples = 64;
+  const Scene scene(testing::make_test_scene("glass-sphere-fog"));
+  const auto bdpt = make_bdpt(scene, {.max_depth = 6, .seen_light = false});
+  const auto run = [&](double least_effective) {
+    return Bootstrap(
+               *bdpt, 1, kSamples, kUniformImportance,
+               [](const PrimarySample&, double) { return 1.0; }, least_effective)
+        .normalization();
+  };
+  EXPECT_EQ(run(0).samples(), kSamples * Film::kGroups);
+  const double least = 3 * run(0).effective_samples();
+  const Normalization enough = run(least);
+  EXPECT_GE(enough.effective_samples(), least);
+  EXPECT_LE(enough.samples(), 16 * kSamples * Film::kGroups);
+  // Not for ever.
+  EXPECT_EQ(run(1e30).samples(), 64 * kSamples * Film::kGroups);
+}
+
 }  // namespace
 }  // namespace fogbow

@@ -73,5 +73,31 @@ TEST(Normalization, PoolsGroupsAndTellsTheirSpread) {
   EXPECT_EQ(n.standard_error(), replicate_mean(groups).standard_error);
 }
 
+/// A group whose states never are where samples come, by a chance that its own error does not tell.
+TEST(Normalization, LeavesABridgeThatHoldsNothing) {
+  Normalization n;
+  BridgeSums all;
+  for (int g = 0; g < Film::kGroups; ++g) {
+    BridgeSums sums = run(Bridge(kB), 1000 + g, true);
+    if (g == 3) sums.visited *= 1e-9;
+    n.add(g, sums);
+    all.add(sums);
+  }
+  EXPECT_EQ(n.b(), all.f_star / static_cast<double>(all.samples));
+  EXPECT_LT(n.standard_error(), 0.5 * n.b());
+}
+
+TEST(Normalization, KnowsAsMuchAsEqualSamplesWould) {
+  Normalization n;
+  EXPECT_EQ(n.effective_samples(), 0);
+  BridgeSums sums;
+  for (int i = 0; i < 60; ++i) sums.add_sample(i < 20 ? 3.0 : 0.0, 1);
+  n.add(0, sums);
+  EXPECT_DOUBLE_EQ(n.effective_samples(), 20);
+  sums.add_sample(3e6, 1);
+  n.add(1, sums);
+  EXPECT_NEAR(n.effective_samples(), 1, 1e-3);
+}
+
 }  // namespace
 }  // namespace fogbow

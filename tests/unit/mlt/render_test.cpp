@@ -6,6 +6,8 @@
 #include "core/geometry/shapes.h"
 #include "core/scene/emitters.h"
 #include "media/media.h"
+#include "mlt/render_settings.h"
+#include "mlt/seen_light_picture.h"
 #include "tests/helpers/test_scenes.h"
 
 namespace fogbow {
@@ -56,6 +58,35 @@ TEST(Render, DirectLightIsOfPathsOfTwoEdges) {
   RenderOptions deeper = options_of("path", 1);
   deeper.overrides = {{"max_depth", "3"}};
   EXPECT_EQ(render(direct, deeper).lengths.back().k, 4);
+}
+
+/// Lamps are out of view, and the pilot met no light: the film of seen light has a unit all the
+/// same.
+TEST(Render, SeenLightNeedsNoLightToBeSeen) {
+  SceneDescription description = testing::make_test_scene("surfaces");
+  description.integrator.type = "mlt";
+  const Scene scene(std::move(description));
+  RenderSettings settings = read_render_settings(scene, options_of("mlt", 1));
+  settings.hide_emitters = true;
+  settings.max_depth = 1;  // lamps seen directly, which are hidden
+  EXPECT_NO_THROW(SeenLightPicture(scene, settings, 1, 0));
+}
+
+TEST(Render, TellsWhichLightAnIntegratorDoesNotSample) {
+  const auto note = [](const char* integrator, const char* name) {
+    SceneDescription description = testing::make_test_scene(name);
+    for (const std::string& text :
+         render(Scene(std::move(description)), options_of(integrator, 1)).notes)
+      if (text.find("not sampled by") != std::string::npos) return text;
+    return std::string();
+  };
+  EXPECT_NE(note("path", "mirror-fog").find("point or directional"), std::string::npos);
+  EXPECT_EQ(note("path", "mirror-fog").find("seen"), std::string::npos);
+  EXPECT_NE(note("bdpt", "mirror-fog").find("seen"), std::string::npos);
+  EXPECT_NE(note("light", "glass-sphere-fog").find("seen through specular surfaces"),
+            std::string::npos);
+  EXPECT_EQ(note("path", "glass-sphere-fog"), "");
+  EXPECT_EQ(note("light", "floor-fog"), "");
 }
 
 }  // namespace

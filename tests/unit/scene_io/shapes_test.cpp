@@ -298,6 +298,30 @@ TEST(Instance, IsItsGroupInAnotherPlace) {
   EXPECT_TRUE(folder.load(kGroup).surfaces.empty());
 }
 
+/// As in Mitsuba 3.9.1, where the same mirroring of the shape itself turns a sphere, and a mesh
+/// without normals, inside out.
+TEST(Instance, ThatIsMirroredKeepsItsOutside) {
+  SceneFolder folder;
+  folder.write("tent.obj",
+               "v -1 -1 -1\nv 1 -1 -1\nv 0 1 -1\nv 0 0 1\n"
+               "f 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n");
+  const std::string mesh = R"(<string name="filename" value="tent.obj"/>)";
+  const std::string flat = mesh + R"(<boolean name="face_normals" value="true"/>)";
+  const std::pair<const char*, std::string> cases[] = {
+      {"sphere", ""}, {"obj", mesh}, {"obj", flat}, {"cube", ""}};
+  for (const auto& [type, properties] : cases)
+    for (const char* turn : {"<scale x=\"-1\"/>", "<scale value=\"-1\"/>", "<scale value=\"2\"/>"})
+      for (const bool flip : {false, true}) {
+        const auto scene = folder.load(
+            std::string("<shape type=\"shapegroup\" id=\"g\"><shape type=\"") + type + "\">" +
+            properties + (flip ? kFlip : "") + "</shape></shape>" + instance_of("g", turn));
+        const SurfacePoint x =
+            meet(*scene.surfaces.at(0).shape, Vec3(0.1, 0.05, 9), Vec3(0, 0, -1));
+        EXPECT_GT((flip ? -1 : 1) * x.n_g.z, 0) << type << ' ' << turn << ' ' << flip;
+        EXPECT_GT(dot(x.n_g, x.shading.n), 0) << type << ' ' << turn << ' ' << flip;
+      }
+}
+
 TEST(Instance, ComplainsOfWhatCannotBeInstanced) {
   SceneFolder folder;
   const auto complains = [&](const std::string& body, const char* message) {
