@@ -329,8 +329,8 @@ void print_state(std::ostream& out, const char* title, const PrimarySample& x) {
 }
 
 void print_state(std::ostream& out, const char* title, const PathSample& x) {
-  static constexpr const char* kKinds[] = {"surface", "medium", "point light", "infinite light",
-                                           "sensor"};
+  static constexpr const char* kKinds[] = {"surface",        "medium", "point light",
+                                           "infinite light", "sensor", "parallel sensor"};
   const MeasuredPath& path = x.path();
   out << title << ": log f* = " << x.log_f_star() << ", k=" << path.size()
       << " raster=" << x.raster() << "\n";

@@ -131,6 +131,12 @@ class Render(CliTest):
         self.assertGreater(len(first), 40)
         self.assertEqual(self.expect(0, "render", "scene.xml", "--replay", "1:0:5").stdout, first)
         self.assertNotEqual(self.expect(0, "render", "scene.xml", "--replay", "1:0:6").stdout, first)
+        # Up to its last line where the camera is one of parallel rays, too.
+        scene = scene_text().replace("perspective", "orthographic").replace('<float name="fov" value="40"/>', "")
+        self.write("parallel.xml", scene)
+        parallel = self.expect(0, "render", "parallel.xml", "--replay", "1:0:5").stdout.decode()
+        self.assertIn(" parallel sensor at ", parallel)
+        self.assertRegex(parallel, r"\nmutation .* log ratio ")
 
     def test_info(self):
         text = self.expect(0, "info", "scene.xml").stdout.decode()
