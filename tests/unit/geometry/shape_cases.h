@@ -31,6 +31,13 @@ inline std::shared_ptr<const Shape> cylinder(double scale, const Vec3& offset, b
   return make_cylinder(p0, p1, 0.7 * scale, Transform(), flip);
 }
 
+/// The same cylinder as the mirror image of another: its azimuth runs the other way.
+inline std::shared_ptr<const Shape> mirrored_cylinder(double scale, const Vec3& offset) {
+  const Transform mirror = Transform::scale({-1, 1, 1});
+  const auto [p0, p1] = cylinder_ends(scale, offset);
+  return make_cylinder(mirror.point(p0), mirror.point(p1), 0.7 * scale, mirror, false);
+}
+
 inline TriangleMeshData mesh_data(const Shape& shape) {
   Tessellation t = shape.tessellate();
   return {std::move(t.vertices), {}, {}, std::move(t.triangles)};
@@ -67,7 +74,11 @@ inline std::vector<ShapeCase> all_cases(double scale, const Vec3& offset) {
       {"mirrored disk", make_disk(skewed(scale, offset) * Transform::scale({-1, 1, 1}))});
   cases.push_back({"cylinder", cylinder(scale, offset)});
   cases.push_back({"flipped cylinder", cylinder(scale, offset, true)});
+  cases.push_back({"mirrored cylinder", mirrored_cylinder(scale, offset)});
   cases.push_back({"flipped sphere", make_sphere(offset, 0.7 * scale, true)});
+  TriangleMeshData behind = ellipsoid_data(scale, offset);
+  for (Vec3& n : behind.normals) n = -n;
+  cases.push_back({"mesh with normals behind", make_mesh(std::move(behind))});
   TriangleMeshData faceted = ellipsoid_data(scale, offset);
   faceted.normals.clear();
   cases.push_back({"faceted mesh", make_mesh(std::move(faceted))});
