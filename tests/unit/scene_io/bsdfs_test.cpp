@@ -106,10 +106,10 @@ TEST(Dielectric, Defaults) {
   for (const char* plugin : {"dielectric", "roughdielectric"}) {
     const std::string open = "<bsdf type=\"" + std::string(plugin) + "\">";
     EXPECT_NEAR(load_bsdf(folder, open + "</bsdf>")->eta(), 1.50418, 5e-6);
-    EXPECT_NEAR(load_bsdf(folder, open + R"(<float name="int_ior" value="1.0"/>
-        <float name="ext_ior" value="1.5"/></bsdf>)")
-                    ->eta(),
-                1 / 1.5, 1e-12);
+    const auto bubble = load_bsdf(folder, open + R"(<float name="int_ior" value="1.0"/>
+        <float name="ext_ior" value="1.5"/></bsdf>)");
+    EXPECT_NEAR(bubble->eta(), 1 / 1.5, 1e-12);
+    EXPECT_EQ(bubble->n_exterior(), 1.5);
     EXPECT_NEAR(load_bsdf(folder, open + R"(<string name="int_ior" value="water"/>
         <integer name="ext_ior" value="1"/></bsdf>)")
                     ->eta(),

@@ -86,8 +86,12 @@ TEST_F(MeshAttributes, FacesWithoutAreaTakeTheirsWithThem) {
   TriangleMeshData data;
   data.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}, {1, 1, 0}};
   data.triangles = {{0, 1, 1}, {0, 1, 2}, {2, 2, 0}, {1, 3, 2}};
-  data.attributes = {{"face_n", 1, true, {1, 2, 3, 4}}};
+  data.attributes = {{"face_n", 1, true, {1, 2, 3, 4}},
+                     {"face_color", 3, true, {1, 1, 1, 2, 3, 4, 5, 5, 5, 6, 7, 8}}};
   const auto mesh = make_mesh(data);
+  const MeshAttribute& color = *mesh->find_attribute("face_color");
+  EXPECT_EQ(mesh->attribute(mesh->surface_point(0, Vec2(0.2)), color), RGB(2, 3, 4));
+  EXPECT_EQ(mesh->attribute(mesh->surface_point(1, Vec2(0.2)), color), RGB(6, 7, 8));
   const MeshAttribute& a = *mesh->find_attribute("face_n");
   EXPECT_EQ(mesh->attribute(mesh->surface_point(0, Vec2(0.2)), a), RGB(2));
   EXPECT_EQ(mesh->attribute(mesh->surface_point(1, Vec2(0.2)), a), RGB(4));

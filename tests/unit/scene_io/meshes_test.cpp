@@ -95,6 +95,29 @@ TEST(Ply, BinaryInBothByteOrders) {
   }
 }
 
+/// Whole numbers near the end of their types, where one taken for another of its size shows.
+TEST(Ply, WholeNumbersKeepTheirSign) {
+  for (const bool big : {false, true}) {
+    std::string bytes = std::string("ply\nformat binary_") + (big ? "big" : "little") +
+                        "_endian 1.0\nelement vertex 3\nproperty char x\nproperty uchar y\n"
+                        "property short z\nproperty ushort nx\nproperty int ny\nproperty uint nz\n"
+                        "element face 1\nproperty list uchar ushort vertex_indices\nend_header\n";
+    for (int i = 0; i < 3; ++i) {
+      put<std::int8_t>(bytes, -100, big);
+      put<std::uint8_t>(bytes, 200, big);
+      put<std::int16_t>(bytes, -30000, big);
+      put<std::uint16_t>(bytes, 60000, big);
+      put<std::int32_t>(bytes, -2000000000, big);
+      put<std::uint32_t>(bytes, 4000000000u, big);
+    }
+    put<std::uint8_t>(bytes, 3, big);
+    for (const std::uint16_t index : {0, 1, 2}) put<std::uint16_t>(bytes, index, big);
+    const auto mesh = parse_ply(bytes, "m");
+    EXPECT_EQ(mesh.positions[1], Vec3(-100, 200, -30000));
+    EXPECT_EQ(mesh.normals[1], Vec3(60000, -2e9, 4e9));
+  }
+}
+
 TEST(Ply, EveryTruncationOfABinaryFileIsAnError) {
   for (const bool big : {false, true}) {
     const std::string whole = binary_ply(big);

@@ -222,6 +222,29 @@ TEST(Meshes, NormalsAsMitsubaShowsThem) {
   }
 }
 
+/// They stay across what is stretched: a triangle of the plane x + y = 0 becomes one of
+/// x/3 + y = 0.
+TEST(Meshes, NormalsStayAcrossStretchedSurfaces) {
+  SceneFolder folder;
+  folder.write("slope.obj", "v 0 0 0\nv -1 1 0\nv 0 0 1\nvn 1 1 0\nf 1//1 2//1 3//1\n");
+  const Surface s = load_shape(folder, "obj",
+                               R"(<string name="filename" value="slope.obj"/>
+      <transform name="to_world"><scale x="3"/></transform>)");
+  const SurfacePoint x = s.shape->surface_point(0, Vec2(0.3));
+  expect_near(x.n_g, normalize(Vec3(1, 3, 0)), 1e-7);
+  expect_near(x.shading.n, normalize(Vec3(1, 3, 0)), 0x1p-23);
+}
+
+/// Vertices that have none get that of the faces around them, the others keep the file's.
+TEST(Meshes, MissingNormalsAreFilledInAlone) {
+  SceneFolder folder;
+  folder.write("some.obj", "v 0 0 0\nv 1 0 0\nv 0 1 0\nvn 0 0.6 0.8\nf 1//1 2//1 3\n");
+  const Surface s = load_shape(folder, "obj", R"(<string name="filename" value="some.obj"/>)");
+  expect_near(s.shape->surface_point(0, Vec2(0)).shading.n, Vec3(0, 0.6, 0.8), 0x1p-23);
+  expect_near(s.shape->surface_point(0, Vec2(1, 0)).shading.n, Vec3(0, 0.6, 0.8), 0x1p-23);
+  expect_near(s.shape->surface_point(0, Vec2(0, 1)).shading.n, Vec3(0, 0, 1), 0x1p-23);
+}
+
 TEST(Meshes, AreSmoothUnlessFaceNormals) {
   SceneFolder folder;
   const std::string tent =
