@@ -230,6 +230,29 @@ TEST(BsdfLaws, RoughBecomesSmooth) {
 // --- What cannot be made
 // ---------------------------------------------------------------------------------------------
 
+/// The interface with other things on its sides: all else stays.
+TEST(BsdfLaws, InterfacesBetweenOthers) {
+  const RGB reflectance(0.9, 0.5, 0.3), transmittance(0.2, 0.8, 1);
+  const RoughnessSettings rough{MicrofacetKind::Beckmann, 0.3, 0.2};
+  const double n_interior = 1.31, n_exterior = 1.33, eta = n_interior / n_exterior;
+  const std::pair<std::shared_ptr<const Bsdf>, std::shared_ptr<const Bsdf>> cases[] = {
+      {make_dielectric(1.5, reflectance, transmittance, 1.2),
+       make_dielectric(eta, reflectance, transmittance, n_exterior)},
+      {make_rough_dielectric(rough, 1.5, reflectance, transmittance, 1.2),
+       make_rough_dielectric(rough, eta, reflectance, transmittance, n_exterior)}};
+  const Vec3 light = direction(0.4, 0), eyes[] = {direction(0.5, 3), direction(2.7, 3)};
+  for (const auto& [other, expected] : cases) {
+    EXPECT_EQ(other->n_exterior(), 1.2);
+    const auto found = other->between(n_interior, n_exterior);
+    EXPECT_EQ(found->eta(), eta);
+    EXPECT_EQ(found->n_exterior(), n_exterior);
+    for (const Vec3& eye : eyes) {
+      EXPECT_EQ(found->f_s(kAnyPoint, light, eye), expected->f_s(kAnyPoint, light, eye));
+      EXPECT_EQ(found->f_dirac(kAnyPoint, light, eye), expected->f_dirac(kAnyPoint, light, eye));
+    }
+  }
+}
+
 TEST(BsdfLaws, NullPassesEverything) {
   const auto null = make_null();
   EXPECT_FALSE(null->has_smooth() || null->has_dirac());

@@ -194,6 +194,23 @@ TEST(CoatedValues, DiracPartsAreMitsubas) {
   EXPECT_NEAR(mask->passage(kAnyPoint, direction(0.9, 2)).x, 0.7, 1e-12);
 }
 
+/// What passes of parts that do not all pass light, by what each passes alone: with Fresnel's
+/// R = ((η − 1)/(η + 1))² a pane passes 1 − 2R/(1 + R) of what falls on it straight.
+TEST(CoatedValues, PassageIsThatOfTheParts) {
+  const RGB tint(0.9, 0.6, 0.3), mirror(0.2, 0.4, 0.8);
+  const double R = sqr(0.5 / 2.5), through = 1 - 2 * R / (1 + R);
+  const auto pane = make_thin_dielectric(1.5, mirror, tint), wall = make_diffuse(RGB(0.5));
+  const auto passage = [](const Bsdf& bsdf) { return bsdf.passage(kAnyPoint, Vec3(0, 0, 1)); };
+  EXPECT_NEAR(length(passage(*pane) - through * tint), 0, 1e-12);
+  const auto sieve = make_mask(pane, 0.3);
+  EXPECT_NEAR(length(passage(*sieve) - (0.3 * through * tint + RGB(0.7))), 0, 1e-12);
+  for (const bool first : {false, true}) {
+    const auto blend = first ? make_blend(pane, wall, 0.4) : make_blend(wall, pane, 0.6);
+    EXPECT_TRUE(blend->has_passage());
+    EXPECT_NEAR(length(passage(*blend) - 0.6 * through * tint), 0, 1e-12);
+  }
+}
+
 /// ∫ f_s cosθ plus the Dirac part's weight.
 RGB albedo(const Bsdf& bsdf, const Vec3& eye) {
   RGB sum(0);
@@ -270,6 +287,9 @@ TEST(RoughDiffuse, IsOrenAndNayars) {
             1.3 * make_rough_diffuse(rho, alpha)->f_s(kAnyPoint, w, across).y);
   EXPECT_NEAR(make_rough_diffuse(rho, alpha, true)->f_s(kAnyPoint, w, w).y,
               0.5 * kInvPi * (C1 + C2 * std::tan(theta)), 1e-14);
+  // max(0, cosφ): across, only A is left.
+  EXPECT_NEAR(make_rough_diffuse(rho, alpha, true)->f_s(kAnyPoint, w, across).y, 0.5 * kInvPi * C1,
+              1e-14);
 }
 
 TEST(CoatedLaws, RefuseWhatMakesNoSense) {

@@ -705,6 +705,41 @@ TEST(Perturbed, FlatMapsChangeNothing) {
   EXPECT_EQ(bsdf->roughness(), 1) << "facets are not those of the shading normal: nothing to hold";
 }
 
+/// Nor a flat height where the shading normal leans away from the surface: it is what bumps turn.
+TEST(Perturbed, LevelHeightsKeepInterpolatedNormals) {
+  TriangleMeshData leaning;
+  leaning.positions = {{0, 0, 0}, {1, 0, 0}, {0, 1, 0}};
+  leaning.triangles = {{0, 1, 2}};
+  leaning.normals = {{0.3, -0.2, 1}, {0.4, 0.1, 1}, {-0.1, 0.3, 1}};
+  const auto level = make_bump_map(nested(1), picture(1, {90, 90, 90, 90, 90, 90}));
+  const auto on = make_mesh(leaning);
+  SurfacePoint x = on->surface_point(0, {0.3, 0.2});
+  x.shape = on.get();
+  const Vec3 a = direction(0.7, 1), b = direction(0.6, 4);
+  const RGB f = nested(1)->f_s(x, a, b);
+  EXPECT_NEAR(length(level->f_s(x, a, b) - f), 0, 1e-12 * f.x);
+}
+
+/// A surface that is alike on both sides looks from behind as through a reflection at the point,
+/// if its normals are turned to the viewer there as well.
+TEST(Perturbed, LooksAlikeFromBehind) {
+  const auto bsdf = perturbed(0, true, make_twosided(nested(1)));
+  const auto on = shape(0);
+  int turned = 0;
+  for (const Vec2 xy : {Vec2(0.2, -0.3), Vec2(-0.5, 0.1), Vec2(0.6, 0.3)}) {
+    const SurfacePoint x = point_below(*on, xy);
+    for (const double theta : {0.3, 0.9, 1.5})
+      for (const double phi : {0.5, 2.5, 4.5}) {
+        const Vec3 light = direction(0.6, phi + 2.8), eye = direction(theta, phi);
+        const RGB f = bsdf->f_s(x, light, eye);
+        EXPECT_EQ(bsdf->f_s(x, -light, -eye), f);
+        EXPECT_EQ(bsdf->pdf_sigma(x, -eye, -light), bsdf->pdf_sigma(x, eye, light));
+        turned += !is_black(f);
+      }
+  }
+  EXPECT_GT(turned, 20);
+}
+
 /// ∂p/∂u and ∂p/∂v against differences of what the shapes say themselves.
 TEST(UvTangents, AreDerivatives) {
   TriangleMeshData mesh;

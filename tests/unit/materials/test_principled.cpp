@@ -160,6 +160,25 @@ TEST(Principled, EvalIsMitsubas) {
   EXPECT_GT(positive, 50);
 }
 
+/// Where all is transmitted and nothing tinted it is rough glass, also for light that comes from
+/// inside and stays there.
+TEST(Principled, ClearGlassIsARoughDielectric) {
+  const double roughness = 0.6;
+  for (const double eta : {1.5, 0.7}) {
+    const auto clear = make_principled(
+        {.base_color = RGB(1), .roughness = roughness, .spec_trans = 1.0, .eta = eta});
+    const auto glass =
+        make_rough_dielectric({MicrofacetKind::Ggx, sqr(roughness), sqr(roughness)}, eta);
+    for (const double a : {0.3, 1.2, 2.0, 2.8})
+      for (const double b : {0.5, 1.4, 1.9, 2.5}) {
+        const Vec3 light = direction(a, 1), eye = direction(b, 3.5);
+        const RGB expected = glass->f_s(kAnyPoint, light, eye);
+        EXPECT_NEAR(length(clear->f_s(kAnyPoint, light, eye) - expected), 0, 1e-10 * expected.x)
+            << eta << ' ' << a << ' ' << b;
+      }
+  }
+}
+
 TEST(Principled, SamplePdfAndInvert) {
   for (std::size_t i = 0; i < cases().size(); ++i) {
     const auto bsdf = make_principled(cases()[i].settings);

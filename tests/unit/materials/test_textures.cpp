@@ -458,6 +458,30 @@ TEST(TexturedBsdf, HasTheValueOfThePoint) {
   }
 }
 
+/// One of two roughnesses that are the same on average, and what only the mirror of a coat has.
+TEST(TexturedBsdf, HasTheValueOfThePointInOnePlaceAlone) {
+  const RGB dark(0.1), bright(0.5);
+  const auto board = make_checkerboard_texture(dark, bright, Transform());
+  const Vec3 light(0.6, 0, 0.8), eye(0, 0.28, 0.96);
+  for (const Vec2 uv : {Vec2(0.2, 0.3), Vec2(0.7, 0.3)}) {
+    const double here = board->number(at(uv));
+    const auto metal = [&](const Textured<double>& u, const Textured<double>& v) {
+      return make_rough_conductor({MicrofacetKind::Ggx, u, v}, RGB(0), RGB(1))
+          ->f_s(at(uv), light, eye);
+    };
+    const Textured<double> varying(board);
+    const double average = varying.mean();
+    EXPECT_EQ(metal(varying, average), metal(here, average));
+    EXPECT_EQ(metal(average, varying), metal(average, here));
+    EXPECT_NE(metal(average, varying), metal(average, average));
+    const RGB tint = board->color(at(uv));
+    const Vec3 mirror(-light.x, -light.y, light.z);
+    EXPECT_EQ(
+        make_plastic(1.5, false, RGB(0.5), Textured<RGB>(board))->f_dirac(at(uv), light, mirror),
+        make_plastic(1.5, false, RGB(0.5), tint)->f_dirac(at(uv), light, mirror));
+  }
+}
+
 TEST(TexturedBsdf, RefusesMoreThanAllLight) {
   Image bright(1, 1, {"R", "G", "B"});
   bright.pixels = {0.5f, 1.5f, 0};
