@@ -194,7 +194,7 @@ testing::Chart map_chart(const Transform& to_world, int width, int rows) {
 }
 
 TEST(EnvironmentEmitter, DirectionsAreATriple) {
-  const Transform turned = Transform::rotate({1, 2, 3}, 70) * Transform::scale({1, 1, -1});
+  const Transform turned = Transform::rotate({1, 2, 3}, 70) * Transform::scale({3, 3, -3});
   const std::pair<Image, Transform> cases[] = {{sky(), turned}, {ramps(), Transform()}};
   for (const auto& [image, to_world] : cases) {
     const auto emitter = make_environment_emitter(image, to_world);

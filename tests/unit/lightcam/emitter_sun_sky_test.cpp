@@ -103,6 +103,42 @@ TEST(SunEmitter, IsMitsubas) {
   }
 }
 
+/// A world that is turned, or mirrored, with its sun has the same sky.
+TEST(SunAndSky, TurnWithTheWorld) {
+  const Transform turn = Transform::rotate({1, 2, -0.5}, 70);
+  for (const Transform& to_world : {turn, turn * Transform::scale({3, -3, 3})})
+    for (const bool limb_darkening : {false, true}) {
+      SunSkySettings s;
+      s.sun_direction = direction(12, 0.3);
+      s.sun_aperture_degrees = 10;
+      s.limb_darkening = limb_darkening;
+      SunSkySettings turned = s;
+      turned.to_world = to_world;
+      turned.sun_direction = normalize(to_world.vector(s.sun_direction));
+      for (const auto make : {make_sky_emitter, make_sun_emitter}) {
+        const auto plain = make(s), other = make(turned);
+        for (const Vec3& d : {direction(9, 0.3), direction(14, 0.27), direction(12, 0.35)}) {
+          const RGB expected = radiance(*plain, d);
+          EXPECT_GT(expected.x, 0);
+          expect_color(radiance(*other, normalize(to_world.vector(d))), expected, 1e-9);
+        }
+      }
+    }
+}
+
+/// Of a sun on the horizon the lower half is not there.
+TEST(SunEmitter, EndsAtTheHorizon) {
+  for (const bool limb_darkening : {false, true}) {
+    SunSkySettings s;
+    s.sun_direction = direction(0.5, 0.3);
+    s.sun_aperture_degrees = 6;
+    s.limb_darkening = limb_darkening;
+    const auto sun = make_sun_emitter(s);
+    EXPECT_GT(radiance(*sun, direction(1, 0.3)).x, 0);
+    EXPECT_EQ(radiance(*sun, direction(-1, 0.3)), RGB(0));
+  }
+}
+
 /// sun_direction of Mitsuba 3.9.1, which computes it in single precision.
 TEST(SunDirection, IsMitsubas) {
   const auto expect = [](const SunTime& t, const Vec3& d) {

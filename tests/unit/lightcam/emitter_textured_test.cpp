@@ -190,6 +190,11 @@ TEST(SpotEmitter, ShinesThroughASlideAsMitsubas) {
   for (const auto& v : values)
     EXPECT_NEAR(length(emitter->L_e(x, normalize(v.w)) - v.value), 0, 1e-4) << v.value.x;
   EXPECT_EQ(luminance(emitter->L_e(x, -normalize(values[0].w))), 0);
+  // A mirror image of the light throws the mirror image of its slide.
+  const Transform mirror = Transform::scale({1, -1, 1});
+  const auto mirrored = make_spot_emitter(mirror * to_world, RGB(4), 35, 20, coordinates());
+  for (const auto& v : values)
+    EXPECT_NEAR(length(mirrored->L_e(x, mirror.vector(normalize(v.w))) - v.value), 0, 1e-4);
   EXPECT_THROW(make_spot_emitter(to_world, RGB(4), 35, 20, RGB(-1)), std::domain_error);
 }
 
