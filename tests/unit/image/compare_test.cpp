@@ -170,6 +170,25 @@ TEST(Compare, MeansAreNoSurerThanB) {
   EXPECT_EQ(compare_images(n.image, n.reference, options).luminance_ratio_error, of_pixels);
 }
 
+/// 2 ± 0.3 against 1 ± 0.1 in five pixels of a tile of six.
+TEST(Compare, StandardErrorsByHand) {
+  const std::vector<std::string> names{"R", "G", "B", "Error.R", "Error.G", "Error.B"};
+  Image image = constant(3, 2, RGB(2), names), reference = constant(3, 2, RGB(1), names);
+  for (int y = 0; y < 2; ++y)
+    for (int x = 0; x < 3; ++x)
+      for (int c = 3; c < 6; ++c) {
+        image.at(x, y, c) = 0.3f;
+        reference.at(x, y, c) = 0.1f;
+      }
+  ComparisonOptions options;
+  options.exclude = {{1, 1, 1, 1}};
+  const auto r = compare_images(image, reference, options);
+  ASSERT_EQ(r.tiles.size(), 1u);
+  EXPECT_NEAR(r.tiles[0].standard_error, std::sqrt(5 * (0.09 + 0.01)) / 5, 1e-7);
+  EXPECT_NEAR(r.tiles[0].z, 1 / r.tiles[0].standard_error, 1e-6);
+  EXPECT_NEAR(r.luminance_ratio_error, std::sqrt((0.09 + 4 * 0.01) / 5), 1e-7);
+}
+
 TEST(Compare, UnderstatedErrorsAreFound) {
   const Noisy n = noisy_pair(1, 0.7);
   ComparisonOptions options;
@@ -215,7 +234,13 @@ TEST(Compare, DifferenceImages) {
   Image reference = constant(3, 1, RGB(1)), image = reference;
   image.at(0, 0, 0) = 3;
   for (int c = 0; c < 3; ++c) image.at(2, 0, c) = 0.5f;
+  image.x = 5;
+  image.y = 7;
+  image.full_width = 20;
+  image.full_height = 30;
   const Image raw = difference_image(image, reference, DifferenceStyle::Signed);
+  EXPECT_EQ((std::array{raw.x, raw.y, raw.full_width, raw.full_height}),
+            (std::array{5, 7, 20, 30}));
   EXPECT_EQ(raw.at(0, 0, 0), 2);
   EXPECT_EQ(raw.at(0, 0, 1), 0);
   EXPECT_EQ(raw.at(2, 0, 2), -0.5f);
