@@ -162,11 +162,13 @@ class Properties {
     if (const auto texture = take_texture(name, 0, max)) return texture;
     return color(name, fallback, max);
   }
-  /// A number or a texture, in [min, max].
+  /// A number, the mean of a colour's channels, or a texture, in [min, max].
   Textured<double> textured_number(const std::string& name, double fallback, double min = 0,
                                    double max = kInfinity) {
     if (const auto texture = take_texture(name, min, max)) return texture;
-    const double value = number(name, fallback);
+    const Property* p = use(name);
+    const auto* color = p ? std::get_if<Property::Color>(&p->value) : nullptr;
+    const double value = color ? mean(color->c) : number(name, fallback);
     if (!(value >= min && value <= max)) fail(name, "\"" + name + "\" " + must_lie(min, max));
     return value;
   }

@@ -6,6 +6,7 @@
 #include <map>
 #include <set>
 
+#include "core/scene_io/diagnostics.h"
 #include "core/util/log.h"
 
 namespace fogbow {
@@ -34,6 +35,20 @@ constexpr PropertyRule kProperties[] = {
     {"medium", "heterogeneous", "density", "sigma_t"},
 };
 
+/// Words that are others now; with an empty one the property goes away.
+struct ValueRule {
+  const char *tag, *plugin, *name, *from, *to;
+};
+constexpr ValueRule kValues[] = {
+    {"texture", "bitmap", "filter_type", "trilinear", "bilinear"},
+    {"texture", "bitmap", "filter_type", "ewa", "bilinear"},
+    {"texture", "bitmap", "gamma", "-1", ""},
+    {"bsdf", "conductor", "ext_eta", "1", ""},
+    {"bsdf", "conductor", "ext_eta", "air", ""},
+    {"bsdf", "roughconductor", "ext_eta", "1", ""},
+    {"bsdf", "roughconductor", "ext_eta", "air", ""},
+};
+
 /// What says nothing of a linear picture of a scene at rest, or that Mitsuba 3 does by itself.
 struct Dropped {
   const char *tag, *plugin, *name;
@@ -57,12 +72,14 @@ constexpr Dropped kDropped[] = {
 
 /// Defaults that have changed: where none of the properties is given, the first one had a value.
 struct DefaultRule {
-  const char *tag, *plugin, *name, *value;
+  const char *tag, *plugin, *type, *name, *value;
   std::array<const char*, 2> or_given;
 };
 constexpr DefaultRule kDefaults[] = {
-    {"bsdf", "conductor", "material", "Cu", {"eta", "k"}},
-    {"bsdf", "roughconductor", "material", "Cu", {"eta", "k"}},
+    {"bsdf", "conductor", "string", "material", "Cu", {"eta", "k"}},
+    {"bsdf", "roughconductor", "string", "material", "Cu", {"eta", "k"}},
+    // The voxels filled the box that their file tells, or that between two corners.
+    {"volume", "gridvolume", "boolean", "use_grid_bbox", "true", {"min", "max"}},
 };
 
 bool applies(const char* tag, const char* plugin, const XmlNode& node) {
@@ -113,6 +130,8 @@ class Upgrade {
     upgrade_properties(node);
     if (node.tag == "shape") give_null_bsdf(node);
     if (node.tag == "texture") join_uv(node);
+    if (applies("texture", "bitmap", node)) make_raw(node);
+    if (applies("medium", "homogeneous", node)) give_skin(node);
     for (const char* plugin : {"sky", "sun", "sunsky"})
       if (applies("emitter", plugin, node)) turn_sky(node);
   }
@@ -172,6 +191,16 @@ class Upgrade {
            std::string("\"") + rule.from + "\" of " + rule.plugin + " is \"" + rule.to + "\"");
       find_attribute(*child, "name")->value = rule.to;
     }
+    for (const ValueRule& rule : kValues) {
+      XmlNode* child = applies(rule.tag, rule.plugin, node) ? find_child(node, rule.name) : nullptr;
+      XmlAttribute* value = child ? find_attribute(*child, "value") : nullptr;
+      if (!value || value->value != rule.from) continue;
+      const bool goes = *rule.to == '\0';
+      tell(*child, quote(rule.name) + ' ' + quote(rule.from) + " is " +
+                       (goes ? "what is taken for granted" : quote(rule.to)));
+      value->value = rule.to;
+      if (goes) node.children.erase(node.children.begin() + (child - node.children.data()));
+    }
     for (const Dropped& rule : kDropped) {
       XmlNode* child = applies(rule.tag, rule.plugin, node) ? find_child(node, rule.name) : nullptr;
       if (!child) continue;
@@ -186,7 +215,7 @@ class Upgrade {
       tell(node,
            std::string("the default \"") + rule.value + "\" of " + rule.plugin + " is written");
       node.children.push_back(
-          make_node(node, "string", {{"name", rule.name}, {"value", rule.value}}));
+          make_node(node, rule.type, {{"name", rule.name}, {"value", rule.value}}));
     }
   }
 
@@ -211,6 +240,25 @@ class Upgrade {
     sky.children.push_back(make_node(sky, "boolean", {{"name", "y_up"}, {"value", "true"}}));
     if (find_child(sky, "albedo")) return;
     sky.children.push_back(make_node(sky, "float", {{"name", "albedo"}, {"value", "0.15"}}));
+  }
+
+  /// Texels whose gamma is one are values as they stand.
+  void make_raw(XmlNode& texture) {
+    XmlNode* gamma = find_child(texture, "gamma");
+    const std::string* value = gamma ? gamma->attribute("value") : nullptr;
+    if (!value || (*value != "1" && *value != "1.0")) return;
+    tell(*gamma, "a bitmap of \"gamma\" 1 is \"raw\"");
+    *gamma = make_node(*gamma, "boolean", {{"name", "raw"}, {"value", "true"}});
+  }
+
+  /// The default was the skin1 of [Jensen2001], in 1/mm.
+  void give_skin(XmlNode& medium) {
+    for (const char* name : {"sigma_s", "sigma_a", "sigma_t", "albedo", "material"})
+      if (find_child(medium, name)) return;
+    tell(medium, "the default of a homogeneous medium, which was skin, is written");
+    for (const auto& [name, value] :
+         {std::pair("sigma_s", "0.74, 0.88, 1.01"), std::pair("sigma_a", "0.032, 0.17, 0.48")})
+      medium.children.push_back(make_node(medium, "rgb", {{"name", name}, {"value", value}}));
   }
 
   /// Scales and offsets of texture coordinates.

@@ -254,6 +254,10 @@ TEST(Mask, DefaultsAndErrors) {
   SurfacePoint x;
   x.uv = {0.25, 0.75};
   expect_equal(board->passage(x, Vec3(0, 0, 1)), RGB(1));
+  // Of a colour the mean, as Mitsuba 3.9.1 shows (0.2 for this one).
+  const auto colored = load_bsdf(folder, R"(<bsdf type="mask"><bsdf type="diffuse"/>
+      <rgb name="opacity" value="0.3, 0.2, 0.1"/></bsdf>)");
+  expect_equal(colored->passage(SurfacePoint{}, Vec3(0, 0, 1)), RGB(0.8));
   EXPECT_TRUE(folder.warnings.empty());
   EXPECT_NE(folder.error(R"(<bsdf type="mask"/>)").find("needs a nested bsdf"), std::string::npos);
   EXPECT_NE(

@@ -95,6 +95,74 @@ TEST(Upgrade, MakesTheSameSceneWithoutAWarning) {
   EXPECT_EQ(old.film.crop_x, 8);
 }
 
+/// What a body means in an old file, it means in today's words in a file of today.
+void expect_same(SceneFolder& folder, const std::string& old, const std::string& today) {
+  const auto file = [](const char* version, const std::string& body) {
+    return std::string("<scene version=\"") + version + "\"><sensor type=\"perspective\"/>" + body +
+           "</scene>";
+  };
+  const auto before = folder.load_text(file("0.6.0", old));
+  EXPECT_TRUE(folder.warnings.empty()) << folder.warnings.front();
+  const auto now = folder.load_text(file("3.0.0", today));
+  EXPECT_TRUE(folder.warnings.empty()) << folder.warnings.front();
+  EXPECT_EQ(before.content_hash, now.content_hash) << old;
+}
+
+TEST(Upgrade, BitmapsThatWereFilteredInOtherWaysOrWereLinear) {
+  SceneFolder folder;
+  folder.options.read_image = [](const std::string&) {
+    Image image(2, 1, {"R", "G", "B"});
+    std::ranges::fill(image.pixels, 0.5f);
+    return image;
+  };
+  folder.write("a.png", "bytes");
+  const auto bitmap = [](const std::string& properties) {
+    return R"(<shape type="sphere"><bsdf type="diffuse"><texture type="bitmap" name="reflectance">
+      <string name="filename" value="a.png"/>)" +
+           properties + "</texture></bsdf></shape>";
+  };
+  const std::string bilinear = bitmap(R"(<string name="filter_type" value="bilinear"/>)");
+  expect_same(folder, bitmap(R"(<string name="filterType" value="trilinear"/>)"), bilinear);
+  expect_same(folder, bitmap(R"(<string name="filterType" value="ewa"/>)"), bilinear);
+  expect_same(folder, bitmap(R"(<float name="gamma" value="1"/>)"),
+              bitmap(R"(<boolean name="raw" value="true"/>)"));
+  expect_same(folder, bitmap(R"(<float name="gamma" value="-1"/>)"), bitmap(""));
+}
+
+TEST(Upgrade, VoxelsFilledTheBoxOfTheirFile) {
+  SceneFolder folder;
+  std::string vol("VOL\3", 4);
+  const std::int32_t words[] = {1, 1, 1, 1, 1};
+  const float rest[] = {-1, -2, -3, 4, 5, 6, 0.5f};  // the box, and one voxel
+  vol.append(reinterpret_cast<const char*>(words), sizeof words);
+  vol.append(reinterpret_cast<const char*>(rest), sizeof rest);
+  folder.write("a.vol", vol);
+  const auto smoke = [](const std::string& name, const std::string& properties) {
+    return R"(<shape type="cube"><bsdf type="null"/>
+      <medium type="heterogeneous" name="interior"><volume type="gridvolume" name=")" +
+           name + R"("><string name="filename" value="a.vol"/>)" + properties +
+           "</volume></medium></shape>";
+  };
+  expect_same(folder, smoke("density", ""),
+              smoke("sigma_t", R"(<boolean name="use_grid_bbox" value="true"/>)"));
+}
+
+TEST(Upgrade, MediaWereOfSkinAndConductorsLayInAir) {
+  SceneFolder folder;
+  const auto shape = [](const std::string& content) {
+    return "<shape type=\"sphere\">" + content + "</shape>";
+  };
+  const std::string null = R"(<bsdf type="null"/>)";
+  expect_same(folder, shape(null + R"(<medium type="homogeneous" name="interior"/>)"),
+              shape(null + R"(<medium type="homogeneous" name="interior">
+                <rgb name="sigma_s" value="0.74, 0.88, 1.01"/>
+                <rgb name="sigma_a" value="0.032, 0.17, 0.48"/></medium>)"));
+  const std::string metal = R"(<bsdf type="conductor"><string name="material" value="Au"/>)";
+  for (const char* index :
+       {R"(<float name="extEta" value="1"/>)", R"(<string name="extEta" value="air"/>)"})
+    expect_same(folder, shape(metal + index + "</bsdf>"), shape(metal + "</bsdf>"));
+}
+
 TEST(Upgrade, TellsEveryKindOfChangeOnce) {
   SceneFolder folder;
   std::vector<std::string> told;
