@@ -5,8 +5,11 @@
 
 #include <map>
 
+#include "core/geometry/shapes.h"
 #include "core/math/random.h"
 #include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/emitters.h"
+#include "core/scene/sensors.h"
 #include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
 
@@ -178,6 +181,77 @@ TEST(Connect, SeesWhatExtendReached) {
     }
     EXPECT_GT(reached, 1000) << test.name;
   }
+}
+
+/// A pinhole at the origin that looks along +z, from 0.5 to 2 of it in front, and what stands
+/// there.
+Scene clipped_scene(std::initializer_list<double> walls) {
+  SceneDescription d;
+  d.film = {16, 16, 0, 0, 0, 0, make_box_filter()};
+  PerspectiveSettings s;
+  s.width = s.height = 16;
+  s.fov_x_degrees = 90;
+  s.near_clip = 0.5;
+  s.far_clip = 2;
+  d.sensor = make_perspective_sensor(s);
+  d.emitters = {make_constant_emitter(RGB(1))};
+  for (const double z : walls) {
+    Surface& wall = d.surfaces.emplace_back();
+    wall.shape = make_rectangle(Transform::translate({0, 0, z}) * Transform::scale(Vec3(5)));
+    wall.bsdf = make_diffuse(RGB(0.5));
+  }
+  return Scene(std::move(d));
+}
+
+/// Planes across the axis: beside it, they are farther away.
+TEST(Connect, ReachesTheEyeFromBetweenItsClips) {
+  const Scene scene = clipped_scene({});
+  Vertex light;
+  light.kind = VertexKind::PointLight;
+  for (const double x : {0.0, 0.8})
+    for (const double z : {0.49, 0.51, 1.0, 1.99, 2.01}) {
+      light.point.position = Vec3(x * z, 0, z);
+      EXPECT_EQ(connect(scene, light, sensor_vertex(scene)).has_value(), z > 0.5 && z < 2) << z;
+    }
+}
+
+/// What stands beyond the clips hides neither a light between them nor the sky.
+TEST(Connect, SeesThroughWhatIsClipped) {
+  Vertex light, sky;
+  light.kind = VertexKind::PointLight;
+  light.point.position = Vec3(0.3, 0.1, 1.5);
+  sky.kind = VertexKind::InfiniteLight;
+  sky.point.n_g = normalize(Vec3(-0.2, 0.1, -1));
+  const auto seen = [](const Scene& scene, const Vertex& x) {
+    return connect(scene, x, sensor_vertex(scene)).has_value();
+  };
+  const Scene clear = clipped_scene({0.3, 2.5}), walled = clipped_scene({1});
+  EXPECT_TRUE(seen(clear, light));
+  EXPECT_TRUE(seen(clear, sky));
+  EXPECT_FALSE(seen(walled, light));
+  EXPECT_FALSE(seen(walled, sky));
+}
+
+/// Profiles are used for one ray after another, and remember what they were asked.
+TEST(RayProfile, ForgetsTheRayBefore) {
+  const Scene scene(testing::make_test_scene("patchy-flame"));
+  const Vertex x = sensor_vertex(scene);
+  RayProfile used;
+  int different = 0;
+  RGB before(0);
+  for (int i = 0; i < 200; ++i) {
+    Rng rng(testing::suite_seed(), RngDomain::Test, 6, i);
+    const SensorRay ray = scene.sensor().sample_direction(x.position(), uniform2(rng));
+    RayProfile fresh;
+    used.trace(scene, x, ray.w);
+    fresh.trace(scene, x, ray.w);
+    constexpr double t = 3;
+    const RGB tau = fresh.tau_q(t);
+    ASSERT_EQ(used.tau_q(t), tau);
+    different += tau != before;
+    before = tau;
+  }
+  EXPECT_GT(different, 20);
 }
 
 }  // namespace
