@@ -272,6 +272,22 @@ TEST(Scene, LeavesOutLightFromBeyondUnboundedFog) {
   EXPECT_EQ(Scene(std::move(bounded)).infinite_emitters().size(), 1u);
 }
 
+/// Light from infinity sets out in the fog that is everywhere, though not everywhere of a density.
+TEST(Scene, LightFromInfinityBeginsInWhatIsAround) {
+  HeterogeneousSettings settings;
+  settings.sigma_t = std::make_shared<Volume>(RGB(0.3), Transform::scale(Vec3(4)));
+  settings.albedo = std::make_shared<Volume>(RGB(0.5));
+  const auto cloud = make_heterogeneous_medium(settings, make_isotropic_phase());
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(1, Vec3(0, 0, 5)))});
+  d.emitters = {make_constant_emitter(RGB(1))};
+  d.sensor_medium = cloud;
+  d.sensor_medium_declared = true;
+  const Scene scene(std::move(d));
+  ASSERT_EQ(scene.infinite_emitters().size(), 1u);
+  EXPECT_EQ(scene.medium_around_emitter(scene.infinite_emitters()[0], Vec3(50), kNoPrimitive),
+            cloud.get());
+}
+
 TEST(Scene, EmittingMediaAreEmittersWithinTheirBoundaries) {
   const auto flame = fog("flame", 2);
   SceneDescription d = seen_from(
