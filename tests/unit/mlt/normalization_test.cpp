@@ -99,5 +99,15 @@ TEST(Normalization, KnowsAsMuchAsEqualSamplesWould) {
   EXPECT_NEAR(n.effective_samples(), 1, 1e-3);
 }
 
+/// 1, 2, …, 8 have the mean 4.5 and the variance 6; their mean has an eighth of it.
+TEST(Normalization, StandardErrorIsThatOfTheMean) {
+  std::array<double, Film::kGroups> replicates;
+  for (int g = 0; g < Film::kGroups; ++g) replicates[g] = g + 1;
+  static_assert(Film::kGroups == 8);
+  const ReplicateMean m = replicate_mean(replicates);
+  EXPECT_DOUBLE_EQ(m.mean, 4.5);
+  EXPECT_DOUBLE_EQ(m.standard_error, std::sqrt(6.0 / 8));
+}
+
 }  // namespace
 }  // namespace fogbow

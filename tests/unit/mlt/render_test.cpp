@@ -3,11 +3,13 @@
 
 #include <gtest/gtest.h>
 
+#include "core/estimators/sampling.h"
 #include "core/geometry/shapes.h"
 #include "core/scene/emitters.h"
 #include "media/media.h"
 #include "mlt/render_settings.h"
 #include "mlt/seen_light_picture.h"
+#include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
 
 namespace fogbow {
@@ -87,6 +89,84 @@ TEST(Render, TellsWhichLightAnIntegratorDoesNotSample) {
             std::string::npos);
   EXPECT_EQ(note("path", "glass-sphere-fog"), "");
   EXPECT_EQ(note("light", "floor-fog"), "");
+}
+
+/// Values add up, and independent errors by their squares.
+TEST(SeenLightPicture, AddsToWhatChainsHaveMade) {
+  const Scene scene(testing::make_test_scene("sky-lens"));
+  RenderSettings settings;
+  settings.max_depth = 4;
+  SeenLightPicture seen(scene, settings, 1, 0.1);
+  seen.keep_up(1);
+  const auto [width, height] = rendered_size(scene.film());
+  Image black(width, height, {"R", "G", "B", "Error.R", "Error.G", "Error.B"}), grey = black;
+  for (int i = 0; i < width * height; ++i)
+    for (int c = 0; c < 6; ++c) grey.pixels[6 * i + c] = c < 3 ? 2.0f : 0.03f;
+  const Image alone = seen.add_to(black), sum = seen.add_to(grey);
+  int lit = 0;
+  for (int i = 0; i < width * height; ++i)
+    for (int c = 0; c < 3; ++c) {
+      const float value = alone.pixels[6 * i + c], error = alone.pixels[6 * i + 3 + c];
+      EXPECT_FLOAT_EQ(sum.pixels[6 * i + c], 2 + value);
+      EXPECT_FLOAT_EQ(sum.pixels[6 * i + 3 + c], std::hypot(0.03f, error));
+      lit += error > 0.01f;
+    }
+  EXPECT_GT(lit, 100);
+}
+
+/// By every way to make the picture; of chains, seen light is sampled beside them.
+TEST(Render, HiddenEmittersAreNotSeen) {
+  const Scene scene(testing::make_test_scene("sky-lens"));
+  for (const char* integrator : {"path", "light", "bdpt", "pssmlt", "mlt"}) {
+    RenderOptions options = options_of(integrator, 1);
+    options.samples_per_pixel = 2;
+    EXPECT_EQ(render(scene, options).lengths.front().k, 2) << integrator;
+    options.overrides.emplace_back("hide_emitters", "true");
+    EXPECT_EQ(render(scene, options).lengths.front().k, 3) << integrator;
+  }
+}
+
+/// Chains whose number does not divide that of the mutations make them all the same.
+TEST(Render, ChainsMakeAsManyMutationsAsAskedFor) {
+  const Scene scene(testing::make_test_scene("surfaces"));
+  const auto [width, height] = rendered_size(scene.film());
+  RenderOptions options = options_of("pssmlt", 1);
+  options.overrides[0].second = "7";
+  options.samples_per_pixel = 2;
+  ASSERT_NE(2 * width * height % (7 * Film::kGroups), 0);
+  EXPECT_EQ(render(scene, options).samples, static_cast<std::uint64_t>(2 * width * height));
+}
+
+/// b over many seeds: right even where chains are but two steps long, whose last states carry half
+/// of the light, and spread as each run says of itself.
+TEST(Render, BOfShortRunsIsRightAndItsErrorsAreTrue) {
+  const Scene scene(testing::make_test_scene("surfaces"));
+  const auto [width, height] = rendered_size(scene.film());
+  const auto run = [&](const std::string& integrator, std::uint64_t seed, double samples) {
+    RenderOptions options = options_of(integrator, seed);
+    options.samples_per_pixel = samples;
+    options.overrides.insert(options.overrides.end(), {{"max_depth", "4"}, {"two_stage", "false"}});
+    return render(scene, options);
+  };
+  const double expected = run("bdpt", 77, 256).b;
+  const double two_steps = 2.0 * 2 * Film::kGroups / (width * height);
+  constexpr int kSeeds = 40;
+  for (const auto& [integrator, samples] :
+       {std::pair{"path", 8.0}, {"pssmlt", two_steps}, {"mlt", two_steps}}) {
+    std::vector<double> b;
+    double stated = 0;
+    for (std::uint64_t seed = 0; seed < kSeeds; ++seed) {
+      const RenderResult result = run(integrator, seed, samples);
+      b.push_back(result.b);
+      stated += sqr(result.b_stderr) / kSeeds;
+    }
+    const testing::Estimate found = testing::estimate(b);
+    EXPECT_NEAR(found.mean, expected, 4.5 * found.standard_error + 0.01 * expected) << integrator;
+    // The variance of so few runs is known to a quarter of itself, and has a tail.
+    const double variance = kSeeds * sqr(found.standard_error);
+    EXPECT_GT(stated, 0.3 * variance) << integrator;
+    EXPECT_LT(stated, 3 * variance) << integrator;
+  }
 }
 
 }  // namespace
