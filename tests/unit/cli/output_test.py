@@ -6,7 +6,7 @@ import math
 import resource
 import unittest
 
-from support import CliTest, exr_metadata, read_exr, read_png
+from support import CliTest, exr_metadata, read_exr, read_png, scene_text
 
 
 class Outputs(CliTest):
@@ -69,6 +69,7 @@ class Outputs(CliTest):
         header = exr_metadata(self.folder / "run.exr")
         self.assertEqual(header["dataWindow"], (2, 1, 6, 4))
         self.assertEqual(header["displayWindow"], (0, 0, 9, 5))
+        self.assertEqual([report["scene"][name] for name in ("width", "height", "crop")], [10, 6, [2, 1, 5, 4]])
         self.assertEqual(header["channels"], [(name, 2) for name in ("B", "Error.B", "Error.G", "Error.R", "G", "R")])
         self.assertAlmostEqual(header["b"], 0.25)
         self.assertAlmostEqual(header["bStandardError"], 0.0025)
@@ -82,6 +83,12 @@ class Outputs(CliTest):
         self.assertEqual(picture["G"], [(y,) * 5 for y in range(4)])
 
     def test_world_to_camera(self):
+        self.check_world_to_camera()
+        # A camera in larger units sees the same world.
+        self.write("scene.xml", scene_text().replace("<lookat", '<scale value="5"/><lookat', 1))
+        self.check_world_to_camera()
+
+    def check_world_to_camera(self):
         self.render()
         m = exr_metadata(self.folder / "run.exr")["worldToCamera"]
 
