@@ -8,6 +8,10 @@
 #include <array>
 
 #include "core/estimators/sampling.h"
+#include "core/geometry/shapes.h"
+#include "core/scene/bsdf/bsdfs.h"
+#include "core/scene/emitters.h"
+#include "core/scene/sensors.h"
 #include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
 
@@ -66,6 +70,36 @@ TEST(NullCollisions, PicturesAgreeWithExactTracking) {
                 exact[1].mean, exact[1].standard_error, oracle[1].mean, oracle[1].standard_error,
                 seen);
   }
+}
+
+/// The sky straight through a pane: with Fresnel's R = ((η − 1)/(η + 1))² it passes 1 − 2R/(1 + R)
+/// of its tint, channel by channel, though all of them pass or stop at once.
+TEST(NullCollisions, PanesPassTheirColours) {
+  const RGB tint(0.9, 0.5, 0.1);
+  SceneDescription d;
+  d.film = {4, 4, 0, 0, 0, 0, make_box_filter()};
+  PerspectiveSettings camera;
+  camera.width = camera.height = 4;
+  camera.fov_x_degrees = 0.1;
+  d.sensor = make_perspective_sensor(camera);
+  d.emitters = {make_constant_emitter(RGB(1))};
+  Surface& pane = d.surfaces.emplace_back();
+  pane.shape = make_rectangle(Transform::translate({0, 0, 3}));
+  pane.bsdf = make_thin_dielectric(1.5, RGB(1), tint);
+  const Scene scene(std::move(d));
+  const auto path = make_path_tracer(scene, {.max_depth = 1, .null_collisions = true});
+  constexpr int kSamples = 40000;
+  RGB sum(0);
+  Workspace w;
+  for (std::uint64_t i = 0; i < kSamples; ++i) {
+    Rng rng(suite_seed(), RngDomain::Test, 99, i);
+    RandomStream stream(rng);
+    path->sample(stream, stream, w);
+    for (const Contribution& c : w.contributions) sum += c.value / double(kSamples);
+  }
+  const double R = sqr(0.5 / 2.5);
+  // 4.5 standard errors of the brightest channel.
+  for (int c = 0; c < 3; ++c) EXPECT_NEAR(sum[c] / (tint[c] * (1 - 2 * R / (1 + R))), 1, 0.025);
 }
 
 }  // namespace
