@@ -3,8 +3,12 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+#include <sstream>
+
 #include "core/estimators/sampling.h"
 #include "core/geometry/shapes.h"
+#include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/emitters.h"
 #include "media/media.h"
 #include "mlt/render_settings.h"
@@ -135,6 +139,29 @@ TEST(Render, ChainsMakeAsManyMutationsAsAskedFor) {
   options.samples_per_pixel = 2;
   ASSERT_NE(2 * width * height % (7 * Film::kGroups), 0);
   EXPECT_EQ(render(scene, options).samples, static_cast<std::uint64_t>(2 * width * height));
+}
+
+/// In a room that hardly absorbs, the paths where the program's own limit cuts carry light.
+TEST(Render, TellsWhatTheLongestPathsCarry) {
+  SceneDescription d = testing::make_test_scene("surfaces");
+  d.surfaces.clear();
+  Surface& room = d.surfaces.emplace_back();
+  room.shape = make_cube(Transform::scale(Vec3(4)), true);
+  room.bsdf = make_diffuse(RGB(0.999));
+  Surface& lamp = d.surfaces.emplace_back();
+  lamp.shape = make_sphere(Vec3(2), 0.5);
+  lamp.bsdf = make_diffuse(RGB(0.5));
+  lamp.emitter = make_area_emitter(lamp.shape, RGB(3));
+  const Scene scene(std::move(d));
+  RenderOptions options = options_of("path", 1);
+  options.samples_per_pixel = 1;
+  const RenderResult result = render(scene, options);
+  ASSERT_EQ(result.lengths.back().k, 257);
+  std::ostringstream carried;
+  carried << "carry " << 100 * result.lengths.back().value / result.b << "%";
+  EXPECT_TRUE(std::ranges::any_of(result.notes, [&](const std::string& note) {
+    return note.find(carried.str()) != std::string::npos;
+  })) << carried.str();
 }
 
 /// b over many seeds: right even where chains are but two steps long, whose last states carry half
