@@ -118,6 +118,25 @@ TEST(SeenLightPicture, AddsToWhatChainsHaveMade) {
   EXPECT_GT(lit, 100);
 }
 
+/// Two skies, of one colour each.
+TEST(Render, AllThatShinesFromInfinityIsSeen) {
+  SceneDescription d = testing::make_test_scene("surfaces");
+  d.surfaces.clear();
+  d.emitters = {make_constant_emitter(RGB(1, 0, 0)), make_constant_emitter(RGB(0, 3, 0))};
+  const Scene scene(std::move(d));
+  for (const char* integrator : {"path", "bdpt", "pssmlt", "mlt"}) {
+    const RenderResult result = render(scene, options_of(integrator, 1));
+    EXPECT_NEAR(result.b, luminance(RGB(1, 3, 0)), 0.05) << integrator;
+    RGB mean(0);
+    const int pixels = result.image.width * result.image.height;
+    for (int y = 0; y < result.image.height; ++y)
+      for (int x = 0; x < result.image.width; ++x)
+        mean += RGB(result.image.at(x, y, 0), result.image.at(x, y, 1), result.image.at(x, y, 2)) /
+                double(pixels);
+    EXPECT_LT(length(mean - RGB(1, 3, 0)), 0.05) << integrator;
+  }
+}
+
 /// By every way to make the picture; of chains, seen light is sampled beside them.
 TEST(Render, HiddenEmittersAreNotSeen) {
   const Scene scene(testing::make_test_scene("sky-lens"));
