@@ -41,6 +41,22 @@ TEST(Render, FilmHoldsLightThatTheFirstSamplesDidNotSee) {
     EXPECT_NO_THROW(render(scene, options_of("light", seed))) << seed;
 }
 
+/// All light on one pixel, where the importance is least, and of a colour of little luminance.
+TEST(Render, ChainsMayAllEndOnOneBluePixel) {
+  SceneDescription description = testing::make_test_scene("surfaces");
+  std::erase_if(description.surfaces, [](const Surface& s) { return !s.emitter; });
+  Surface spot;
+  spot.shape = make_sphere(Vec3(0), 0.02);
+  spot.bsdf = make_diffuse(RGB(0, 0, 0.8));
+  description.surfaces.push_back(std::move(spot));
+  const Scene scene(std::move(description));
+  RenderOptions options = options_of("mlt", 1);
+  options.samples_per_pixel = 2048;
+  const RenderResult result = render(scene, options);
+  EXPECT_GT(result.b, 0);
+  EXPECT_EQ(result.non_finite, 0u);
+}
+
 TEST(Render, PointLightsAreNotSeenByPinholes) {
   SceneDescription description = testing::make_test_scene("mirror-fog");
   description.emitters = {make_point_emitter(Vec3(0, 0.2, 0.5), RGB(5))};
