@@ -118,9 +118,8 @@ TEST_P(SeenLight, IsWhatTheEyeRunsInto) {
               GetParam().name.c_str(), a.mean, a.standard_error, b.mean, b.standard_error,
               power(a, b, kBias * b.mean, level));
   const std::string& name = GetParam().name;
-  const bool rarely_found =
-      name == "glass-sphere-fog" || name == "fog-in-glass" || name == "smoke-in-glass" ||
-      name == "overlapping-volumes";
+  const bool rarely_found = name == "glass-sphere-fog" || name == "fog-in-glass" ||
+                            name == "smoke-in-glass" || name == "overlapping-volumes";
   if (!rarely_found) {
     EXPECT_GT(power(a, b, kBias * b.mean, level), 0.99);
   }
