@@ -30,20 +30,14 @@ BridgeSums Normalization::all() const {
 
 std::uint64_t Normalization::samples() const { return all().samples; }
 
-double Normalization::effective_samples() const {
-  const BridgeSums sums = all();
-  return sums.squares > 0 ? sqr(sums.f_star) / sums.squares : 0;
-}
-
 double Normalization::estimate(const BridgeSums& sums) const {
-  constexpr double kUnsure = 0.1;  // standard error, in parts of b
   std::array<double, Film::kGroups> bridged, alone;
   for (int g = 0; g < Film::kGroups; ++g) {
     bridged[g] = groups_[g].b();
     alone[g] = groups_[g].mean();
   }
   const ReplicateMean by_bridge = replicate_mean(bridged), by_samples = replicate_mean(alone);
-  const bool unsure = !(by_bridge.standard_error < kUnsure * by_bridge.mean);
+  const bool unsure = !(by_bridge.standard_error < kDisagreement * by_bridge.mean);
   return unsure && !(by_bridge.standard_error <= by_samples.standard_error) ? sums.mean()
                                                                             : sums.b();
 }

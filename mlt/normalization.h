@@ -54,7 +54,13 @@ struct BridgeSums {
   double b() const;
   /// Of the samples alone.
   double mean() const;
+  /// Equal samples that would know the mean of f*/p as well: (Σ f*/p)² / Σ (f*/p)².
+  double effective_samples() const { return squares > 0 ? f_star * f_star / squares : 0; }
 };
+
+/// Standard error of b between groups, relative to b, above which the groups are said to disagree:
+/// the picture's brightness is then anyone's guess.
+inline constexpr double kDisagreement = 0.1;
 
 /// b = ∫ f* dμ for each of the independent groups of chains, from the group's own bootstrap,
 /// independent steps and the states they met.
@@ -67,8 +73,7 @@ class Normalization {
   /// Of b(), from the spread between groups.
   double standard_error() const;
   std::uint64_t samples() const;
-  /// Equal samples that would know the mean of f*/p as well: (Σ f*/p)² / Σ (f*/p)².
-  double effective_samples() const;
+  double effective_samples() const { return all().effective_samples(); }
   /// χ² with kGroups − 1 degrees of freedom of the groups' sample means of f*/p against the errors
   /// that each group states for itself.
   double disagreement() const;

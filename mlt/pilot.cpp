@@ -6,6 +6,7 @@
 #include <cmath>
 
 #include "core/util/parallel.h"
+#include "mlt/normalization.h"
 #include "mlt/primary_sample.h"
 
 namespace fogbow {
@@ -61,7 +62,7 @@ void blur(Cells& cells, const PictureGrid& grid) {
 Pilot run_pilot(const Estimator& estimator, double aspect, std::uint64_t seed,
                 std::uint64_t samples, double least_effective) {
   struct Block {
-    double f_star = 0, squares = 0;
+    BridgeSums sums;
     Techniques techniques;
     std::vector<std::pair<std::size_t, double>> lit;  // cell, luminance
   };
@@ -80,8 +81,7 @@ Pilot run_pilot(const Estimator& estimator, double aspect, std::uint64_t seed,
       for (std::uint64_t i = 0; i < kBlock; ++i) {
         Rng rng(seed, RngDomain::WarmUp, b * kBlock + i, 1);
         x.draw(estimator, rng);
-        blocks[b].f_star += x.f_star();
-        blocks[b].squares += sqr(x.f_star());
+        blocks[b].sums.add_sample(x.f_star(), 1);
         for (const Contribution& c : x.contributions()) {
           entry(blocks[b].techniques, c.k, c.s) += luminance(c.value);
           blocks[b].lit.emplace_back(grid.cell(c.raster), luminance(c.value));
@@ -90,12 +90,9 @@ Pilot run_pilot(const Estimator& estimator, double aspect, std::uint64_t seed,
     });
   };
   const auto effective = [&] {
-    double sum = 0, squares = 0;
-    for (const Block& block : blocks) {
-      sum += block.f_star;
-      squares += block.squares;
-    }
-    return squares > 0 ? sqr(sum) / squares : 0;
+    BridgeSums all;
+    for (const Block& block : blocks) all.add(block.sums);
+    return all.effective_samples();
   };
   draw(0, std::max<std::uint64_t>(1, (samples + kBlock - 1) / kBlock));
   for (int doubling = 0; doubling < kMaxDoublings && effective() < least_effective; ++doubling)

@@ -24,9 +24,7 @@ int chain_film_exponent(const PictureImportance& importance) {
   constexpr int kFractionBits = 32;
   return std::ilogb(1 / importance.least()) - kFractionBits;
 }
-/// Standard error of b between groups, relative to b, above which the groups are said to disagree:
-/// the picture's brightness is then anyone's guess.
-constexpr double kDisagreement = 0.1;
+
 /// Path lengths that carry less of the light are left out of the verdict on convergence.
 constexpr double kNotableShare = 0.01;
 /// Samples of the bootstrap for one of the pilot.

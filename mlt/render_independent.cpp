@@ -7,6 +7,7 @@ namespace {
 
 /// Fraction bits of the other films below the mean luminance.
 constexpr int kRadianceFractionBits = 30;
+
 /// One count of the film is 2 to this.
 int film_exponent(const Scene& scene, const Estimator& estimator, std::uint64_t seed) {
   return std::max(luminance_exponent(estimator, seed) - kRadianceFractionBits,

@@ -55,7 +55,8 @@ class BridgeLaw : public ::testing::TestWithParam<std::string> {
           table, seed, kChains,
           [&](int group, std::uint64_t chain) {
             Rng rng(seed, RngDomain::Test, chain, 1);
-            return start(bootstrap.start(group, rng.uniform()), rng.uniform());
+            const double choice = rng.uniform();
+            return start(bootstrap.start(group, rng.uniform()), choice);
           },
           bridge_);
       Film film(scene_.film(), -36);

@@ -4,7 +4,6 @@
 
 #include <cstdlib>
 #include <map>
-#include <set>
 
 #include "core/util/parallel.h"
 #include "mlt/render.h"
@@ -71,16 +70,7 @@ Shares by_chains(const Scene& scene) {
 
 class ClassShares : public ::testing::TestWithParam<TestScene> {};
 
-/// Surfaces, media, emission, lights at infinity, glass and overlaps: one of each.
-bool is_fast(const std::string& scene) {
-  static const std::set<std::string> scenes{
-      "surfaces", "floor-fog",          "nested-media",       "flame",
-      "sky-lens", "two-kinds-of-glass", "overlapping-volumes"};
-  return scenes.contains(scene);
-}
-
 TEST_P(ClassShares, ChainsSpendTheirTimeAsTheLightIsShared) {
-  if (!kLong && !is_fast(GetParam().name)) GTEST_SKIP() << "in the long suite";
   const Scene scene(GetParam().make());
   const Shares bdpt = by_bdpt(scene), chains = by_chains(scene);
   double b = 0;
