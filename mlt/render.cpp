@@ -65,7 +65,7 @@ std::unique_ptr<Estimator> make_estimator(const Scene& scene, const RenderSettin
 int least_film_exponent(const Scene& scene) {
   constexpr int kFractionBits = 46;
   // Power through the sphere around the scene, as radiance.
-  const double radiance = scene.emitter_distribution().total() / sqr(2 * kPi * scene.radius());
+  const double radiance = scene.power() / sqr(2 * kPi * scene.radius());
   return radiance > 0 ? std::ilogb(radiance) - kFractionBits : 0;
 }
 

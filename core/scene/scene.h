@@ -88,11 +88,13 @@ class Scene {
   /// Surfaces that light can pass straight through.
   bool has_null_surfaces() const { return has_null_surfaces_; }
 
-  // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen in
-  // proportion to their power.
+  // Emitters: those of surfaces, those on none, and a Volume for every emitting medium; chosen half
+  // in proportion to their power and half alike.
   std::size_t emitter_count() const { return emitters_.size(); }
   const Emitter& emitter(std::size_t i) const { return *emitters_[i]; }
   const DiscreteDistribution& emitter_distribution() const { return emitter_distribution_; }
+  /// Of all emitters, as luminance.
+  double power() const { return power_; }
   /// The medium around a point of an emitter that lies on no medium boundary; for emitters at
   /// infinity the one beyond the scene.
   const Medium* medium_around_emitter(int emitter, const Vec3& p, PrimitiveId on) const {
@@ -154,6 +156,7 @@ class Scene {
   std::vector<std::pair<const Medium*, int>> emitter_of_medium_;
   std::vector<int> infinite_emitters_;
   DiscreteDistribution emitter_distribution_;
+  double power_ = 0;
   Bounds bounds_;
   double radius_ = 0;
   bool has_null_surfaces_ = false;

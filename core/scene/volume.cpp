@@ -101,27 +101,24 @@ void Volume::make_lattice(const Transform& to_world) {
   }
 }
 
-int Volume::samples_of(int axis, int block) const {
-  return std::min(kBlock, count_[axis] - kBlock * block) +
-         (filter_ == VolumeFilter::Trilinear ? 1 : 0);
+std::vector<int> Volume::voxels_of(int axis, int block) const {
+  const int first = kBlock * block;
+  const int cells = std::min(kBlock, count_[axis] - first);
+  std::vector<int> voxels(cells + (filter_ == VolumeFilter::Trilinear ? 1 : 0));
+  for (int i = 0; auto& voxel : voxels)
+    voxel = wrapped(axis, std::int64_t{first_[axis]} + first + i++);
+  return voxels;
 }
 
 template <class Visit>
 void Volume::for_samples(const VoxelData& data, const Index& block, Visit&& visit) const {
-  std::size_t voxel[3][kSide];
-  Index n;
-  for (int axis = 0; axis < 3; ++axis) {
-    n[axis] = samples_of(axis, block[axis]);
-    for (int i = 0; i < n[axis]; ++i)
-      voxel[axis][i] = static_cast<std::size_t>(
-          wrapped(axis, std::int64_t{first_[axis]} + kBlock * block[axis] + i));
-  }
-  for (int z = 0; z < n[2]; ++z)
-    for (int y = 0; y < n[1]; ++y)
-      for (int x = 0; x < n[0]; ++x)
-        visit(x, y, z,
-              &data.values[((voxel[2][z] * size_[1] + voxel[1][y]) * size_[0] + voxel[0][x]) *
-                           channels_]);
+  const auto xs = voxels_of(0, block[0]), ys = voxels_of(1, block[1]), zs = voxels_of(2, block[2]);
+  const auto voxel = [&](std::size_t x, std::size_t y, std::size_t z) {
+    return &data.values[((z * size_[1] + y) * size_[0] + x) * channels_];
+  };
+  for (int z = 0; z < std::ssize(zs); ++z)
+    for (int y = 0; y < std::ssize(ys); ++y)
+      for (int x = 0; x < std::ssize(xs); ++x) visit(x, y, z, voxel(xs[x], ys[y], zs[z]));
 }
 
 void Volume::make_blocks(const VoxelData& data) {
@@ -130,12 +127,8 @@ void Volume::make_blocks(const VoxelData& data) {
   std::array<std::vector<int>, 3> first_like;
   for (int axis = 0; axis < 3; ++axis) {
     std::map<std::vector<int>, int> first;
-    for (int b = 0; b < blocks_[axis]; ++b) {
-      std::vector<int> voxels;
-      for (int i = 0; i < samples_of(axis, b); ++i)
-        voxels.push_back(wrapped(axis, std::int64_t{first_[axis]} + kBlock * b + i));
-      first_like[axis].push_back(first.emplace(std::move(voxels), b).first->second);
-    }
+    for (int b = 0; b < blocks_[axis]; ++b)
+      first_like[axis].push_back(first.emplace(voxels_of(axis, b), b).first->second);
   }
   const std::size_t n = block_index(0, 0, blocks_[2]);
   kinds_.resize(n);

@@ -104,7 +104,8 @@ class Volume {
   /// visit(x, y, z, voxel) for all samples of a block, as sample_index() numbers them.
   template <class Visit>
   void for_samples(const VoxelData& data, const Index& block, Visit&& visit) const;
-  int samples_of(int axis, int block) const;
+  /// Those that the samples of a block on an axis are.
+  std::vector<int> voxels_of(int axis, int block) const;
   int wrapped(int axis, std::int64_t i) const;
   double sample(const Index& i, int channel) const;
   template <class Corner>

@@ -2,6 +2,7 @@
 #include "core/scene_io/diagnostics.h"
 
 #include <algorithm>
+#include <charconv>
 #include <cstdio>
 #include <numeric>
 
@@ -56,13 +57,18 @@ std::string quote(std::string_view text) {
   return result + (text.size() > kMaxShown ? "...\"" : "\"");
 }
 
-std::string listed(const std::vector<std::string>& names) {
+std::string listed(const std::vector<std::string>& names, std::string_view last) {
   std::string result;
   for (std::size_t i = 0; i < names.size(); ++i) {
-    if (i > 0) result += i + 1 == names.size() ? " and " : ", ";
+    if (i > 0) result += i + 1 == names.size() ? " " + std::string(last) + " " : ", ";
     result += "\"" + names[i] + "\"";
   }
   return result;
+}
+
+std::string number(float value) {
+  char text[32];
+  return {text, std::to_chars(text, text + sizeof text, value).ptr};
 }
 
 std::string suggestion(std::string_view name, const std::vector<std::string>& known) {

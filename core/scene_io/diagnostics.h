@@ -24,7 +24,9 @@ class Diagnostics {
 /// In quotes, shortened, control characters as \xNN: what a message may show of a file.
 std::string quote(std::string_view text);
 /// "a", "b" and "c".
-std::string listed(const std::vector<std::string>& names);
+std::string listed(const std::vector<std::string>& names, std::string_view last = "and");
+/// As few digits as tell it from other floats.
+std::string number(float value);
 /// The known name that was probably meant, as ` (did you mean "x"?)`; empty if none is near.
 std::string suggestion(std::string_view name, const std::vector<std::string>& known);
 

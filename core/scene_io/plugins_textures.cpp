@@ -19,7 +19,7 @@ Value choice(Properties& p, const std::string& name,
     if (found == word) return value;
     names.emplace_back(word);
   }
-  p.fail(name, "expected " + listed(names) + ", found " + quote(found));
+  p.fail(name, "expected " + listed(names, "or") + ", found " + quote(found));
 }
 
 Image read_picture(Properties& p, const PictureContext& context) {

@@ -19,7 +19,7 @@ T choice(Properties& p, const std::string& name, const std::map<std::string, T>&
   if (const auto it = table.find(value); it != table.end()) return it->second;
   std::vector<std::string> known;
   for (const auto& [key, unused] : table) known.push_back(key);
-  p.fail(name, quote(name) + " must be one of " + listed(known) + ", found " + quote(value));
+  p.fail(name, quote(name) + " must be one of " + listed(known, "or") + ", found " + quote(value));
 }
 
 /// From the unit cube to the box of the file.

@@ -88,7 +88,7 @@ Transform read_step(const XmlNode& node, Diagnostics& diagnostics) {
   }
   const std::vector<std::string> known{"translate", "rotate", "scale", "matrix", "lookat"};
   throw Error(ErrorKind::Scene, node.where(),
-              "expected a step of a transform (" + listed(known) + "), found <" + tag + ">" +
+              "expected a step of a transform (" + listed(known, "or") + "), found <" + tag + ">" +
                   suggestion(tag, known));
 }
 

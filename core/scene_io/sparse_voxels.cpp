@@ -145,7 +145,7 @@ void SparseVoxels::set(const Index& at, const float* value) {
   for (int c = 0; c < v.channels; ++c) {
     if (!(value[c] >= 0 && std::isfinite(value[c])))
       fail("voxel (" + text(at, ", ") + ") of " + name() + " is " +
-           (std::isfinite(value[c]) ? "negative: " + std::to_string(value[c]) : "not finite"));
+           (std::isfinite(value[c]) ? "negative: " + number(value[c]) : "not finite"));
     v.values[offset * v.channels + c] = std::abs(value[c]);  // no negative zero
   }
 }

@@ -6,6 +6,7 @@
 #include <cstring>
 
 #include "core/scene_io/byte_cursor.h"
+#include "core/scene_io/diagnostics.h"
 #include "core/util/error.h"
 
 namespace fogbow {
@@ -53,7 +54,7 @@ class VolParser {
     const std::size_t voxel = i / v.channels, nx = v.size[0], ny = v.size[1];
     fail("voxel (" + std::to_string(voxel % nx) + ", " + std::to_string(voxel / nx % ny) + ", " +
          std::to_string(voxel / nx / ny) + ") is " +
-         (std::isfinite(value) ? "negative: " + std::to_string(value) : "not finite"));
+         (std::isfinite(value) ? "negative: " + number(value) : "not finite"));
   }
 
   std::uint32_t next_word() {

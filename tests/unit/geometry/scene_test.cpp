@@ -229,7 +229,7 @@ TEST(Scene, RefusesWhatCannotBeRendered) {
   EXPECT_THROW(Scene(std::move(d)), Error);
 }
 
-TEST(Scene, ChoosesEmittersInProportionToTheirPower) {
+TEST(Scene, ChoosesEmittersHalfByPowerHalfAlike) {
   SceneDescription d = seen_from(Vec3(0), {wall(cube(3)), wall(make_sphere({0, 2, 0}, 0.5))});
   d.surfaces[1].emitter = make_area_emitter(d.surfaces[1].shape, RGB(1, 2, 3));
   d.emitters.push_back(make_constant_emitter(RGB(0.1)));
@@ -245,8 +245,19 @@ TEST(Scene, ChoosesEmittersInProportionToTheirPower) {
   for (std::size_t i = 0; i < 3; ++i) total += luminance(scene.emitter(i).power());
   for (std::size_t i = 0; i < 3; ++i)
     EXPECT_NEAR(scene.emitter_distribution().probability(i),
-                luminance(scene.emitter(i).power()) / total, 1e-15);
+                0.5 * luminance(scene.emitter(i).power()) / total + 0.5 / 3, 1e-15);
+  EXPECT_NEAR(scene.power(), total, 1e-12 * total);
   EXPECT_NEAR(scene.radius(), 3 * std::sqrt(3.0), 1e-12);
+}
+
+TEST(Scene, NeverChoosesEmittersWithoutPowerWhereOthersShine) {
+  SceneDescription d = seen_from(Vec3(0), {wall(cube(1))});
+  d.emitters = {make_point_emitter(Vec3(0), RGB(0)), make_point_emitter(Vec3(0.1), RGB(1e-30)),
+                make_point_emitter(Vec3(0.2), RGB(1e30))};
+  const Scene scene(std::move(d));
+  EXPECT_EQ(scene.emitter_distribution().probability(0), 0);
+  EXPECT_NEAR(scene.emitter_distribution().probability(1), 0.25, 1e-15);
+  EXPECT_NEAR(scene.emitter_distribution().probability(2), 0.75, 1e-15);
 }
 
 TEST(Scene, ChoosesUniformlyAmongEmittersWithoutPower) {

@@ -169,7 +169,7 @@ TEST(Transforms, FailWithTheStep) {
       {R"(<scale value="1e200"/><scale value="1e200"/>)", "3:1: transform is singular"},
       {R"(<rotat x="1" angle="5"/>)",
        "3:1: expected a step of a transform (\"translate\", \"rotate\", \"scale\", "
-       "\"matrix\" and \"lookat\"), found <rotat> (did you mean \"rotate\"?)"},
+       "\"matrix\" or \"lookat\"), found <rotat> (did you mean \"rotate\"?)"},
       {R"(<float name="a" value="1"/>)", "3:1: expected a step of a transform"},
   };
   for (const auto& [step, message] : cases)

@@ -122,7 +122,7 @@ TEST_F(TextureTest, Errors) {
       {in_bsdf(of_file("bright.exr")),
        "scene.xml:3:1: the values of the texture \"reflectance\" must lie between 0 and 1"},
       {in_bsdf(bitmap(R"(<string name="wrap_mode" value="black"/>)")),
-       "expected \"repeat\", \"mirror\" and \"clamp\", found \"black\""},
+       "expected \"repeat\", \"mirror\" or \"clamp\", found \"black\""},
       {in_bsdf(bitmap() + bitmap()), "a second \"reflectance\" texture"},
       {in_bsdf(bitmap() + R"(<rgb name="reflectance" value="0.5"/>)"),
        "is given twice: as a value and as a texture"},

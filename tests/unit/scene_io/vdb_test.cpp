@@ -324,7 +324,7 @@ TEST_F(VdbFile, RefusesWhatIsNoDensity) {
     grid->tree().setValue(Coord(-3, 4, 5), v);
     return grid;
   };
-  expect(with_value(-0.5f), "voxel (-3, 4, 5) of the grid \"g\" is negative: -0.5");
+  expect(with_value(-1e-9f), "voxel (-3, 4, 5) of the grid \"g\" is negative: -1e-09");
   expect(with_value(std::nanf("")), "voxel (-3, 4, 5) of the grid \"g\" is not finite");
   expect(with_value(INFINITY), "is not finite");
   const auto tile = openvdb::FloatGrid::create();
