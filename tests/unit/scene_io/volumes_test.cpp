@@ -172,7 +172,7 @@ TEST_F(VolumeScene, RefusesWhatItCannotMean) {
   expect(R"(<volume type="gridvolume" name="sigma_t"/>)", "needs the string \"filename\"");
   expect(R"(<volume type="vdb" name="sigma_t"/>)", "volume plugin \"vdb\" is not supported");
   expect(grid("sigma_t", R"(<string name="filter_type" value="cubic"/>)"),
-         "\"filter_type\" must be one of \"nearest\" and \"trilinear\", found \"cubic\"");
+         "\"filter_type\" must be one of \"nearest\" or \"trilinear\", found \"cubic\"");
   expect(grid("sigma_t", R"(<string name="wrap_mode" value="border"/>)"), "\"wrap_mode\" must be");
   expect(grid("albedo"), "albedo of a medium must lie in [0, 1]");
   expect(R"(<float name="scale" value="-1"/>)", "\"scale\" must not be negative");
