@@ -144,21 +144,29 @@ class CellSteps {
   CellStep steps_[3 * Volume::kBlock];
 };
 
+/// Two numbers that one instruction adds or multiplies: what a cell's faces at x = 0 and x = 1
+/// have.
+using Pair [[gnu::vector_size(2 * sizeof(double))]] = double;
+
 /// One channel of the field in one cell, along the ray.
 template <int kChannels, VolumeFilter kFilter>
 class CellDensity {
  public:
   CellDensity(const RegularTracking& tracking, const CellStep& step, int channel)
       : tracking_(tracking), cell_(step.cell) {
-    constexpr int kCorners = kFilter == VolumeFilter::Trilinear ? 8 : 1;
-    for (int i = 0; i < kCorners; ++i)
-      v_[i] = step.corner[Volume::kCorners[i] * kChannels + channel];
+    constexpr bool kTrilinear = kFilter == VolumeFilter::Trilinear;
+    for (int i = 0; i < (kTrilinear ? 4 : 1); ++i) {
+      const float* v = step.corner + Volume::kCorners[2 * i] * kChannels + channel;
+      v_[i] = Pair{v[0], v[kTrilinear ? kChannels : 0]};
+    }
   }
 
   double operator()(double t) const {
-    if constexpr (kFilter == VolumeFilter::Nearest) return v_[0];
+    if constexpr (kFilter == VolumeFilter::Nearest) return v_[0][0];
     const Vec3 p = tracking_.local(cell_, t);
-    return trilinear(v_, p.x, p.y, p.z);
+    const Pair y0 = v_[0] + p.z * (v_[2] - v_[0]), y1 = v_[1] + p.z * (v_[3] - v_[1]);
+    const Pair x = y0 + p.y * (y1 - y0);
+    return x[0] + p.x * (x[1] - x[0]);
   }
 
   /// Over [ta, tb]. A trilinear field is a cubic along the ray, which two-point Gauss quadrature
@@ -166,16 +174,14 @@ class CellDensity {
   /// second derivative alone, which is that of the products xy, xz and yz.
   double integral(double ta, double tb) const {
     const double length = tb - ta;
-    if constexpr (kFilter == VolumeFilter::Nearest) return v_[0] * length;
-    const Vec3 p = tracking_.local(cell_, 0.5 * (ta + tb)), &k = tracking_.curvature();
-    const double x0 = v_[1] - v_[0], x1 = v_[3] - v_[2], x2 = v_[5] - v_[4], x3 = v_[7] - v_[6];
-    const double v00 = v_[0] + p.x * x0, v10 = v_[2] + p.x * x1;
-    const double v01 = v_[4] + p.x * x2, v11 = v_[6] + p.x * x3;
-    const double y0 = v10 - v00, y1 = v11 - v01, v0 = v00 + p.y * y0, v1 = v01 + p.y * y1;
-    const double xy0 = x1 - x0, xy1 = x3 - x2, xz0 = x2 - x0, xz1 = x3 - x1;
-    const double second =
-        k.x * (y1 - y0) + k.y * (xz0 + p.y * (xz1 - xz0)) + k.z * (xy0 + p.z * (xy1 - xy0));
-    return std::max(length * (v0 + p.z * (v1 - v0) + length * length * second), 0.0);
+    if constexpr (kFilter == VolumeFilter::Nearest) return v_[0][0] * length;
+    const Vec3 p = tracking_.local(cell_, 0.5 * (ta + tb)),
+               k = length * length * tracking_.curvature();
+    const Pair dz0 = v_[2] - v_[0], dz1 = v_[3] - v_[1], dyz = dz1 - dz0;
+    const Pair y0 = v_[0] + p.z * dz0, dy = v_[1] + p.z * dz1 - y0;
+    const Pair x = y0 + p.y * dy + k.x * dyz;
+    const Pair xy_xz = k.z * dy + k.y * (dz0 + p.y * dyz);
+    return std::max(length * (x[0] + p.x * (x[1] - x[0]) + (xy_xz[1] - xy_xz[0])), 0.0);
   }
 
   /// The t in [ta, tb] where the integral from ta is `target`, which that up to tb exceeds.
@@ -199,7 +205,7 @@ class CellDensity {
  private:
   const RegularTracking& tracking_;
   const RegularTracking::Index& cell_;
-  double v_[8];
+  Pair v_[4];  ///< at (y, z) = (0, 0), (1, 0), (0, 1) and (1, 1)
 };
 
 }  // namespace fogbow
