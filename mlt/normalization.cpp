@@ -1,15 +1,28 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 #include "mlt/normalization.h"
 
+#include <algorithm>
+
 #include "core/math/vec.h"
 #include "core/util/binary_io.h"
 
 namespace fogbow {
 
+namespace {
+
+/// Standard error of a mean over it, from Σ x and Σ x².
+double relative_error(double sum, double squares, std::uint64_t n) {
+  if (!(sum > 0)) return 0;
+  return std::sqrt(std::max(squares / sqr(sum) - 1 / static_cast<double>(n), 0.0));
+}
+
+}  // namespace
+
 void BridgeSums::add(const BridgeSums& other) {
   f_star += other.f_star;
   squares += other.squares;
   sampled += other.sampled;
+  sampled_squares += other.sampled_squares;
   samples += other.samples;
   visited += other.visited;
   states += other.states;
@@ -30,7 +43,7 @@ BridgeSums Normalization::all() const {
 
 std::uint64_t Normalization::samples() const { return all().samples; }
 
-double Normalization::estimate(const BridgeSums& sums) const {
+bool Normalization::over_bridge() const {
   std::array<double, Film::kGroups> bridged, alone;
   for (int g = 0; g < Film::kGroups; ++g) {
     bridged[g] = groups_[g].b();
@@ -38,14 +51,17 @@ double Normalization::estimate(const BridgeSums& sums) const {
   }
   const ReplicateMean by_bridge = replicate_mean(bridged), by_samples = replicate_mean(alone);
   const bool unsure = !(by_bridge.standard_error < kDisagreement * by_bridge.mean);
-  return unsure && !(by_bridge.standard_error <= by_samples.standard_error) ? sums.mean()
-                                                                            : sums.b();
+  return !unsure || by_bridge.standard_error <= by_samples.standard_error;
 }
 
 double Normalization::standard_error() const {
   std::array<double, Film::kGroups> groups;
   for (int g = 0; g < Film::kGroups; ++g) groups[g] = b(g);
-  return replicate_mean(groups).standard_error;
+  const BridgeSums sums = all();
+  const double by_samples = over_bridge()
+                                ? relative_error(sums.sampled, sums.sampled_squares, sums.samples)
+                                : relative_error(sums.f_star, sums.squares, sums.samples);
+  return std::max(replicate_mean(groups).standard_error, by_samples * b());
 }
 
 double Normalization::disagreement() const {

@@ -36,6 +36,7 @@ class Bridge {
 struct BridgeSums {
   double f_star = 0, squares = 0;  ///< Σ f*/p, Σ (f*/p)²
   double sampled = 0;              ///< Σ g f*/p
+  double sampled_squares = 0;      ///< Σ (g f*/p)²
   std::uint64_t samples = 0;
   double visited = 0, states = 0;  ///< Σ g of states, and how many they stand for
 
@@ -43,6 +44,7 @@ struct BridgeSums {
     f_star += ratio;
     squares += ratio * ratio;
     sampled += g * ratio;
+    sampled_squares += g * ratio * (g * ratio);
     ++samples;
   }
   void add_state(double g, double weight) {
@@ -70,7 +72,8 @@ class Normalization {
   double b(int group) const { return estimate(groups_[group]); }
   /// Of all groups together.
   double b() const { return estimate(all()); }
-  /// Of b(), from the spread between groups.
+  /// Of b(), from the spread between groups, but no less than what the samples contribute by their
+  /// own spread: eight groups may agree by chance.
   double standard_error() const;
   std::uint64_t samples() const;
   double effective_samples() const { return all().effective_samples(); }
@@ -82,9 +85,10 @@ class Normalization {
   static Normalization deserialize(std::istream& in);
 
  private:
-  /// By the bridge, unless its groups say next to nothing and those of the samples say more: few
-  /// states may be found where samples and chains meet.
-  double estimate(const BridgeSums& sums) const;
+  /// Not where its groups say next to nothing and those of the samples say more: few states may be
+  /// found where samples and chains meet.
+  bool over_bridge() const;
+  double estimate(const BridgeSums& sums) const { return over_bridge() ? sums.b() : sums.mean(); }
   BridgeSums all() const;
 
   std::array<BridgeSums, Film::kGroups> groups_{};
