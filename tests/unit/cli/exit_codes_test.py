@@ -15,6 +15,8 @@ class Usage(CliTest):
                 (["--time", "1x"], "--time"),
                 (["--time", "0"], "--time"),
                 (["--time", "5m3"], "--time"),
+                (["--time", "5m1h"], "--time"),
+                (["--time", "5m5m"], "--time"),
                 (["--time", "1", "--spp", "2"], "excludes"),
                 (["--spp", "0"], "--spp"),
                 (["--spp", "nan"], "--spp"),

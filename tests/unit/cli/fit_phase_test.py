@@ -51,6 +51,15 @@ class FitPhase(CliTest):
         self.assertAlmostEqual(float(re.search(r"albedo +(\S+),", text)[1]) / expected, 1, delta=1e-3)
         self.assertLess(float(re.search(r"error +(\S+)", text)[1]), 1e-3)
 
+    def test_every_channel_has_its_wavelength(self):
+        """Of droplets far smaller than light, what is scattered goes with 1/λ⁴, what is absorbed with 1/λ."""
+        wavelengths = (600, 300, 450)
+        text = self.fit("--radius", "0.001", "--spread", "0", "--index", "1.5", "--k", "0.1", "--wavelengths",
+                        ",".join(map(str, wavelengths)))
+        albedo = [float(number) for number in re.search(r"albedo +(\S+), (\S+), (\S+)\n", text).groups()]
+        for wavelength, found in zip(wavelengths, albedo):
+            self.assertAlmostEqual(found / albedo[0] * (wavelength / wavelengths[0]) ** 3, 1, delta=2e-3)
+
     def test_scenes_take_it(self):
         xml = self.fit("--radius", "1", "--xml")
         self.assertTrue(xml.startswith("<phase"))

@@ -12,8 +12,8 @@ LONG = "60"
 
 
 class Interrupt(CliTest):
-    def start_render(self, *flags):
-        process = self.start_cli("render", "scene.xml", "--time", LONG, *flags)
+    def start_render(self, *flags, limit=LONG):
+        process = self.start_cli("render", "scene.xml", "--time", limit, *flags)
         process.stderr.readline()  # the first line of progress: the render has begun
         return process
 
@@ -46,6 +46,14 @@ class Interrupt(CliTest):
                 report = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
                 self.assertEqual((report["interrupted"], report["exit_code"]), (True, 75))
                 self.assertLess(report["speed"]["seconds"], float(LONG) / 2)
+
+    def test_times_in_all_units(self):
+        for text, seconds in (("1d2h", 93600), ("1h30m", 5400), ("1.5m", 90), ("90", 90)):
+            process = self.start_render(limit=text)
+            process.send_signal(signal.SIGINT)
+            process.communicate(timeout=30)
+            report = json.loads((self.folder / "run.json").read_text(encoding="utf-8"))
+            self.assertEqual(report["options"]["seconds"], seconds, text)
 
     def test_save_and_go_on(self):
         process = self.start_render("--picture-interval", "0")

@@ -103,6 +103,28 @@ class Render(CliTest):
         self.expect(0, "render", "scene.xml", "-D", "res=20", "--size", "6x4", "--spp", "4")
         self.assertEqual(exr_metadata(self.folder / "run.exr")["displayWindow"], (0, 0, 5, 3))
 
+    def test_seed_and_number_of_samples(self):
+        """A seed is a picture, and another seed another one; as many samples are taken as are asked for."""
+        pictures = []
+        for integrator in ("path", "mlt"):
+            for seed in (1, 1, 2):
+                self.expect(0, "render", "scene.xml", "--integrator", integrator, "--spp", "3", "--seed", seed)
+                self.assertEqual(self.report()["samples"], 3 * 16 * 12)
+                pictures.append(read_exr(self.folder / "run.exr")["G"])
+            self.assertEqual(pictures[-3], pictures[-2])
+            self.assertNotEqual(pictures[-2], pictures[-1])
+
+    def test_repair_closes_what_encloses(self):
+        """A tetrahedron of fog without one side lets the fog out, says check, unless it is to be repaired."""
+        self.write("open.obj", "v 0 0 0\nv 0.3 0 0\nv 0 0.3 0\nv 0 0 0.3\nf 1 3 2\nf 1 2 4\nf 1 4 3\n")
+        fog = ('<shape type="obj"><string name="filename" value="open.obj"/><bsdf type="null"/>'
+               '<medium type="homogeneous" name="interior"/></shape>')
+        self.write("open.xml", scene_text(more=fog))
+        self.assertIn("border edges", self.expect(0, "check", "open.xml").stdout.decode())
+        self.expect(3, "check", "--strict", "open.xml", message="--strict")
+        repaired = self.expect(0, "check", "--strict", "--repair", "open.xml").stdout.decode()
+        self.assertNotIn("border edges", repaired)
+
     def test_properties_reach_the_integrator(self):
         lengths = {}
         for depth in (2, 4):
