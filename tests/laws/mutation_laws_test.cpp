@@ -6,7 +6,9 @@
 #include <map>
 #include <sstream>
 
+#include "core/geometry/shapes.h"
 #include "core/path/techniques.h"
+#include "core/scene/bsdf/bsdfs.h"
 #include "mlt/mutations/technique_sample.h"
 #include "tests/helpers/statistics.h"
 #include "tests/laws/naive_proposals.h"
@@ -433,6 +435,43 @@ std::string case_name(const ::testing::TestParamInfo<MutationLaws::ParamType>& i
   return test_name(std::get<0>(info.param)) + "_" + std::get<1>(info.param);
 }
 
+/// Glass above a floor of which one half is glossy: what moves from one half to the other has other
+/// chains to choose from than before.
+SceneDescription half_glossy_floor() {
+  SceneDescription d = make_test_scene("glass-sphere-fog");
+  Surface& half = d.surfaces.emplace_back();
+  half.shape =
+      make_rectangle(Transform::translate(Vec3(1.25, -0.99, 0)) *
+                     Transform::rotate(Vec3(1, 0, 0), -90) * Transform::scale(Vec3(1.25, 2.5, 1)));
+  half.bsdf =
+      make_rough_conductor({MicrofacetKind::Ggx, 0.25, 0.25}, RGB(0.2, 0.9, 1.1), RGB(3.9, 2.4, 2));
+  return d;
+}
+
+/// The law would hold as well if the choices were not counted and never changed.
+TEST(ManifoldLaws, MovesOntoWhatIsGlossy) {
+  const Scene scene(half_glossy_floor());
+  const PathPopulation population(scene, 6, suite_seed());
+  const auto table =
+      make_path_mutations({{"manifold", 1.0}}, population.techniques(), population.max_vertices());
+  int changed = 0;
+  PathSample y = population.blank();
+  for (const PathSample& x : population.of_every_configuration(kSamples, kPerConfiguration)) {
+    if (!(table[0]->selection_weight(x) > 0)) continue;
+    for (int j = 0; j < 8; ++j) {
+      Rng rng(suite_seed(), RngDomain::Chain, x.selection_key(), static_cast<std::uint64_t>(j));
+      if (!table[0]->propose(x, y, rng).rejection)
+        changed += x.selection_key() != y.selection_key();
+    }
+  }
+  EXPECT_GT(changed, 20);
+}
+
+INSTANTIATE_TEST_SUITE_P(HalfGlossyFloor, LocalLaws,
+                         ::testing::Combine(::testing::Values(TestScene{"half-glossy-floor",
+                                                                        half_glossy_floor}),
+                                            ::testing::Values("manifold")),
+                         case_name);
 INSTANTIATE_TEST_SUITE_P(All, MutationLaws, in_all_scenes(mutation_names()), case_name);
 INSTANTIATE_TEST_SUITE_P(All, LocalLaws, in_all_scenes(local_mutations()), case_name);
 INSTANTIATE_TEST_SUITE_P(All, TechniqueLaws, in_all_scenes({"large_step", "primary_sample"}),

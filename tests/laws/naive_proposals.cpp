@@ -270,6 +270,24 @@ std::vector<Way> scattering_ways(const Scene& scene, const Path& x, const Path& 
   return all;
 }
 
+/// Vertices that may be moved in front of a chain, and the side on which it lies. A walk holds
+/// glossy vertices of the chain as well, so what comes onto something glossy gains chains.
+int manifold_choices(const Scene& scene, const Path& x) {
+  int n = 0;
+  for (int i = 0; i <= last(x); ++i) {
+    for (const int step : {1, -1}) {
+      const int moved = free_vertex(x, i, step);
+      if (x[i].degenerate || moved < 0) continue;
+      int far = moved + step;
+      while (far > 0 && far < last(x) && (x[far].degenerate || is_glossy(scene, x[far])))
+        far += step;
+      n += far >= 0 && far <= last(x) && !x[far].degenerate && !x[far].parallel() &&
+           std::abs(far - moved) >= 2;
+    }
+  }
+  return n;
+}
+
 std::vector<Way> manifold_ways(const Scene& scene, const Path& x, const Path& y) {
   std::vector<Way> all;
   for (int i = 0; i <= last(x); ++i) {
@@ -278,8 +296,10 @@ std::vector<Way> manifold_ways(const Scene& scene, const Path& x, const Path& y)
       if (x[i].degenerate || s.to < 0) continue;
       const int far = free_vertex(x, s.to, step);
       if (far < 0 || std::abs(far - s.to) < 2 || x[far].parallel()) continue;
-      all.push_back(way(scene, i + step, far - step, x, y,
-                        [&](const Path&, const Path& to) { return log_traced(scene, to, s); }));
+      all.push_back(way(scene, i + step, far - step, x, y, [&](const Path& from, const Path& to) {
+        Measured sum = log_traced(scene, to, s);
+        return sum += {-std::log(manifold_choices(scene, from))};
+      }));
     }
   }
   return all;

@@ -5,6 +5,9 @@
 
 #include <gtest/gtest.h>
 
+#include "core/math/random.h"
+#include "core/math/warp.h"
+#include "mlt/mutations/retrace.h"
 #include "tests/helpers/statistics.h"
 #include "tests/laws/path_population.h"
 
@@ -64,6 +67,56 @@ TEST(Walk, LeadsBackToWhereItCameFrom) {
   }
   // Else there was nothing to be refused, and the test could not fail.
   EXPECT_GT(one_way, proposed / 200);
+}
+
+/// Behind surfaces that light passes in part, a vertex lies beyond as many of them as before: else
+/// the way back would end on another. In sight of panes that some directions meet and some do not.
+TEST(Retrace, LeadsBackToWhereItCameFrom) {
+  constexpr int kPaths = 16000, kTries = 4;
+  const Scene scene(make_test_scene("coatings"));
+  const PathPopulation population(scene, 6, suite_seed());
+  std::vector<PathSample> parts;
+  int compared = 0, through = 0, refused = 0;
+  const auto passages = [](const MeasuredPath& x, const Segment& s) {
+    std::int64_t sum = 0;
+    for (int i = s.anchor; i != s.end; i += s.step())
+      sum += x.edge(std::min(i, i + s.step())).passages;
+    return sum;
+  };
+  const auto try_segment = [&](const MeasuredPath& x, const Segment& s, Rng& rng) {
+    MeasuredPath y = x;
+    const Vec3 w = departure(x, s);
+    const Vec3 turned = normalize(w + 0.3 * warp::sample_sphere(uniform2(rng)));
+    const auto why = retrace(scene, y, s, turned);
+    refused += why == Rejection::WrongConfiguration && passages(x, s) > 0;
+    if (why) return;
+    ++compared;
+    through += x[s.end].on_surface() && passages(x, s) > 0;
+    MeasuredPath back = y;
+    ASSERT_FALSE(retrace(scene, back, s, w)) << passages(x, s) << " passages";
+    for (int i = s.anchor; i != s.end; i += s.step()) {
+      const Vec3 apart = back[i + s.step()].position() - x[i + s.step()].position();
+      ASSERT_LT(length(apart), 1e-6 * scene.radius()) << passages(x, s) << " passages";
+    }
+  };
+  for (int sample = 0; compared < kPaths; ++sample) {
+    population.draw(static_cast<std::uint64_t>(sample), 1, parts);
+    for (std::size_t part = 0; part < parts.size(); ++part) {
+      const MeasuredPath& x = parts[part].path();
+      Rng rng(suite_seed(), RngDomain::Test, sample * 64 + part, 0);
+      for (int i = 0; i < x.size(); ++i)
+        for (const Side toward : {Side::Light, Side::Eye}) {
+          const auto segment = segment_from(x, i, toward);
+          if (x[i].degenerate || x[i].infinite() || !segment || !movable(scene, x, *segment))
+            continue;
+          for (int j = 0; j < kTries; ++j) try_segment(x, *segment, rng);
+          if (HasFatalFailure()) return;
+        }
+    }
+  }
+  // Else the panes were never in the way.
+  EXPECT_GT(through, kPaths / 200);
+  EXPECT_GT(refused, kPaths / 200);
 }
 
 }  // namespace
