@@ -10,6 +10,7 @@
 #include "core/geometry/shapes.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/emitters.h"
+#include "core/scene/texture.h"
 #include "media/media.h"
 #include "mlt/render_settings.h"
 #include "mlt/seen_light_picture.h"
@@ -228,6 +229,40 @@ TEST(Render, BOfShortRunsIsRightAndItsErrorsAreTrue) {
     const double variance = kSeeds * sqr(found.standard_error);
     EXPECT_GT(stated, 0.3 * variance) << integrator;
     EXPECT_LT(stated, 3 * variance) << integrator;
+  }
+}
+
+/// Of which one half is no number.
+class HalfBroken final : public Texture {
+ public:
+  RGB color(const SurfacePoint& x) const override { return RGB(number(x)); }
+  double number(const SurfacePoint& x) const override {
+    return x.uv.x < 0.5 ? std::numeric_limits<double>::quiet_NaN() : 0.5;
+  }
+  Range range() const override { return {0.5, 0.5}; }
+  RGB mean() const override { return RGB(0.5); }
+};
+
+/// A wall fills the picture, and one half of it scatters what is not finite: with a path tracer, of
+/// a point light's direct light exactly one half is refused. The rest is as it should be.
+TEST(Render, CountsWhatIsNotFinite) {
+  SceneDescription d = testing::make_test_scene("surfaces");
+  d.surfaces.clear();
+  Surface& wall = d.surfaces.emplace_back();
+  wall.shape = make_rectangle(Transform::scale(Vec3(9, 9, 1)));
+  wall.bsdf = make_diffuse(std::shared_ptr<const Texture>(std::make_shared<HalfBroken>()));
+  d.emitters = {make_point_emitter(Vec3(0, 0.3, 2.5), RGB(4))};
+  const Scene scene(std::move(d));
+  for (const char* integrator : {"path", "light", "bdpt", "pssmlt", "mlt"}) {
+    SCOPED_TRACE(integrator);
+    RenderOptions options = options_of(integrator, 1);
+    options.samples_per_pixel = 4;
+    options.overrides.emplace_back("max_depth", "2");
+    const RenderResult result = render(scene, options);
+    EXPECT_GT(result.non_finite, 0u);
+    if (integrator == std::string("path")) EXPECT_EQ(result.non_finite, result.samples / 2);
+    EXPECT_TRUE(std::isfinite(result.b) && std::isfinite(result.b_stderr));
+    for (const float value : result.image.pixels) ASSERT_TRUE(std::isfinite(value));
   }
 }
 
