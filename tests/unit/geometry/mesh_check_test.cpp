@@ -3,6 +3,9 @@
 
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
+#include "core/math/spread.h"
 #include "tests/helpers/statistics.h"
 #include "tests/unit/geometry/shape_cases.h"
 
@@ -50,6 +53,47 @@ TEST(Boundary, HasTheVolumeOfItsShape) {
   EXPECT_NEAR(group_of({cube(1), cube(0.5, Vec3(0), true)}).volume(), 7, 1e-12);
   EXPECT_NEAR(group_of({make_sphere(Vec3(0), 2), make_sphere(Vec3(0), 1, true)}).volume(),
               28 * kPi / 3, 1e-12);
+}
+
+/// Triangles of a tessellation wind around the normal that the shape has there.
+TEST(Boundary, IsTurnedAsItsShape) {
+  for (const auto& c : testing::all_cases(1, Vec3(1, 2, 3))) {
+    SCOPED_TRACE(c.name);
+    std::vector<SurfacePoint> points;
+    for (int i = 0; i < 4096; ++i) points.push_back(c.shape->sample(spread_point(i, 4096)));
+    const Tessellation t = c.shape->tessellate();
+    for (const auto& [i, j, k] : t.triangles) {
+      const Vec3 &a = t.vertices[i], &b = t.vertices[j], &d = t.vertices[k];
+      const Vec3 middle = (a + b + d) / 3.0;
+      const auto nearest = std::ranges::min_element(
+          points, {}, [&](const SurfacePoint& x) { return length_squared(x.position - middle); });
+      ASSERT_GT(dot(cross(b - a, d - a), nearest->n_g), 0);
+    }
+  }
+}
+
+/// Within, across, apart and touching: of balls and boxes, in all roles.
+TEST(Boundary, TellsWhatLiesWithinWhat) {
+  const BoundaryGroup large = group_of({cube(2)}), ball = group_of({make_sphere(Vec3(0), 2.5)});
+  struct Case {
+    std::shared_ptr<const Shape> shape;
+    bool within, crosses;
+  };
+  const auto reach = [](double x, double radius) { return make_sphere({x, 0, 0}, radius); };
+  for (const auto& [shape, within, crosses] :
+       {Case{reach(0, 1), true, false}, Case{reach(1.5, 1), false, true},
+        Case{reach(1.98, 1), false, true}, Case{reach(3.5, 1), false, false},
+        Case{reach(0, 9), false, false}, Case{cube(1), true, false},
+        Case{cube(1, {1.5, 0, 0}), false, true}, Case{cube(1, {9, 0, 0}), false, false},
+        Case{cube(9), false, false}}) {
+    const BoundaryGroup group = group_of({shape});
+    EXPECT_EQ(group.lies_within(large), within);
+    EXPECT_EQ(group.crosses(large) || large.crosses(group), crosses);
+    EXPECT_FALSE(group.lies_within(group_of({make_sphere({0, 0, 50}, 1)})));
+  }
+  EXPECT_TRUE(large.crosses(ball) || ball.crosses(large));  // at its corners
+  EXPECT_FALSE(large.lies_within(ball));
+  EXPECT_FALSE(ball.lies_within(large));
 }
 
 TEST(Boundary, OfACanIsClosed) {

@@ -4,6 +4,8 @@
 #include <map>
 
 #include "core/geometry/accel.h"
+#include "core/math/random.h"
+#include "core/math/spread.h"
 #include "tests/helpers/statistics.h"
 #include "tests/unit/geometry/shape_cases.h"
 
@@ -346,6 +348,35 @@ TEST(Cylinder, IsHitFromInsideAndOutsideAndThroughItsOpenEnds) {
   EXPECT_DOUBLE_EQ(t({-1, 0, 0}, {1, 0, 0}, true), 2);
   EXPECT_EQ(t({-1, 0, 0}, {-1, 0, 0}, true), -1);
   EXPECT_EQ(t({-1, 0, 0}, {1, 0, 2}, true), -1);
+  // It ends where it ends.
+  for (const double end : {-1, 1}) {
+    EXPECT_DOUBLE_EQ(t({-3, 0, 0.9999 * end}, {1, 0, 0}), 2);
+    EXPECT_EQ(t({-3, 0, 1.0001 * end}, {1, 0, 0}), -1);
+  }
+}
+
+/// No point of a primitive lies in a box that it says it avoids.
+TEST(Shapes, AvoidNoBoxThatHoldsAPartOfThem) {
+  for (const auto& c : testing::all_cases(1, Vec3(1, 2, 3))) {
+    SCOPED_TRACE(c.name);
+    std::vector<SurfacePoint> points;
+    for (int i = 0; i < 512; ++i) points.push_back(c.shape->sample(spread_point(i, 512)));
+    int avoided = 0, met = 0;
+    for (int i = 0; i < 400; ++i) {
+      Rng rng(testing::suite_seed(), RngDomain::Test, static_cast<std::uint64_t>(i), 5);
+      const double size = testing::log_uniform(rng, -2, 0.5);
+      const Vec3 middle = Vec3(1, 2, 3) + 4.0 * (uniform3(rng) - 0.5);
+      const Bounds box{middle - size * uniform3(rng), middle + size * uniform3(rng)};
+      for (const SurfacePoint& x : points) {
+        if (!Bounds{x.position, x.position}.overlaps(box)) continue;
+        ++met;
+        ASSERT_FALSE(c.shape->avoids(x.primitive, box));
+      }
+      avoided += c.shape->avoids(0, box);
+    }
+    EXPECT_GT(met, 100);
+    EXPECT_GT(avoided, 100);
+  }
 }
 
 TEST(Cylinder, RefusesWhatIsNone) {
