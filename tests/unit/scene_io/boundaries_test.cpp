@@ -108,6 +108,9 @@ TEST_F(Repair, OfAllMendsWhatBoundsMediaOrRefracts) {
   EXPECT_EQ(told_.size(), 2u);
   EXPECT_FALSE(closed(folder_.load(shape(""))));
   EXPECT_EQ(told_.size(), 2u);
+  // Instances are copies, and mended like others.
+  const std::string group = "<shape type=\"shapegroup\" id=\"g\">" + shape(kFog) + "</shape>";
+  EXPECT_TRUE(closed(folder_.load(group + R"(<shape type="instance"><ref id="g"/></shape>)")));
 }
 
 }  // namespace

@@ -1,4 +1,5 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "core/math/random.h"
 #include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
@@ -12,8 +13,8 @@ Surface load_shape(SceneFolder& folder, const std::string& type, const std::stri
   return scene.surfaces.at(0);
 }
 
-/// What a ray from `o` towards `d` meets first.
-SurfacePoint meet(const Shape& shape, const Vec3& o, const Vec3& d) {
+/// What a ray from `o` towards `d` meets first, if anything.
+std::optional<SurfacePoint> first_point(const Shape& shape, const Vec3& o, const Vec3& d) {
   std::optional<SurfacePoint> best;
   double nearest = kInfinity;
   for (std::uint32_t i = 0; i < shape.primitive_count(); ++i)
@@ -21,6 +22,11 @@ SurfacePoint meet(const Shape& shape, const Vec3& o, const Vec3& d) {
       nearest = hit->t;
       best = shape.surface_point(i, hit->local);
     }
+  return best;
+}
+
+SurfacePoint meet(const Shape& shape, const Vec3& o, const Vec3& d) {
+  const auto best = first_point(shape, o, d);
   EXPECT_TRUE(best);
   return best.value_or(SurfacePoint{});
 }
@@ -72,6 +78,12 @@ TEST(Sphere, CenterRadiusAndTransform) {
               R"(<shape type="sphere"><transform name="to_world"><scale x="2"/></transform></shape>)")
           .find("2:22: a sphere's \"to_world\" must scale alike"),
       std::string::npos);
+  // Askew, though it keeps the lengths of all axes.
+  EXPECT_NE(folder
+                .error(R"(<shape type="sphere"><transform name="to_world">
+                       <matrix value="1 0.6 0  0 0.8 0  0 0 1"/></transform></shape>)")
+                .find("must scale alike"),
+            std::string::npos);
 }
 
 TEST(Cylinder, EndsRadiusAndTransform) {
@@ -243,6 +255,9 @@ TEST(Meshes, MissingNormalsAreFilledInAlone) {
   expect_near(s.shape->surface_point(0, Vec2(0)).shading.n, Vec3(0, 0.6, 0.8), 0x1p-23);
   expect_near(s.shape->surface_point(0, Vec2(1, 0)).shading.n, Vec3(0, 0.6, 0.8), 0x1p-23);
   expect_near(s.shape->surface_point(0, Vec2(0, 1)).shading.n, Vec3(0, 0, 1), 0x1p-23);
+  // In between it counts as much as those of the file.
+  expect_near(s.shape->surface_point(0, Vec2(0, 0.5)).shading.n,
+              normalize(Vec3(0, 0.6, 0.8) + Vec3(0, 0, 1)), 0x1p-22);
 }
 
 TEST(Meshes, AreSmoothUnlessFaceNormals) {
@@ -343,6 +358,70 @@ TEST(Instance, ThatIsMirroredKeepsItsOutside) {
         EXPECT_GT((flip ? -1 : 1) * x.n_g.z, 0) << type << ' ' << turn << ' ' << flip;
         EXPECT_GT(dot(x.n_g, x.shading.n), 0) << type << ' ' << turn << ' ' << flip;
       }
+}
+
+/// A ray that is moved along meets the same point of an instance, from the same side, with the same
+/// texture coordinates and media: of every type, with a place of its own within the group, and of
+/// instances that are turned, mirrored and scaled.
+TEST(Instance, IsMetWhereRaysMovedBackMeetItsGroup) {
+  SceneFolder folder;
+  folder.write("patch.obj",
+               "v -1 -1 0.2\nv 1 -1 0\nv 1 1 0.4\nv -1 1 0\nvt 0 0\nvt 1 0\nvt 1 1\nvt 0 1\n"
+               "vn 0.2 0 1\nvn 0 0.3 1\nf 1/1/1 2/2/2 3/3/1 4/4/2\n");
+  folder.write("plain.obj",
+               "v -1 -1 0.2\nv 1 -1 0\nv 1 1 0.4\nvt 0 0\nvt 1 0\nvt 1 1\nf 1/1 2/2 3/3\n");
+  const std::string own = R"(<transform name="to_world"><scale value="0.8"/>
+      <rotate x="1" y="0.5" angle="30"/><translate x="0.2" y="-0.1"/></transform>)";
+  const std::string media = R"(<medium type="homogeneous" name="interior" id="in"/>
+      <medium type="homogeneous" name="exterior" id="out"/>)";
+  const std::pair<const char*, std::string> types[] = {
+      {"sphere", ""},
+      {"rectangle", ""},
+      {"cube", ""},
+      {"disk", ""},
+      {"cylinder", ""},
+      {"obj", R"(<string name="filename" value="patch.obj"/>)"},
+      {"obj", R"(<string name="filename" value="plain.obj"/>)"}};
+  const Transform rest =
+      Transform::translate(Vec3(3, 1, -2)) * Transform::rotate(Vec3(0, 1, 1), 70);
+  const std::pair<std::string, Transform> turns[] = {
+      {R"(<scale value="2"/>)", rest * Transform::scale(Vec3(2))},
+      {R"(<scale x="-2" y="2" z="2"/>)", rest * Transform::scale(Vec3(-2, 2, 2))}};
+  for (const auto& [type, properties] : types) {
+    const std::string shape =
+        std::string("<shape type=\"") + type + "\">" + properties + own + media + "</shape>";
+    const Surface alone = folder.load(shape).surfaces.at(0);
+    for (const auto& [step, T] : turns) {
+      SCOPED_TRACE(std::string(type) + properties + step);
+      const Surface s = folder
+                            .load("<shape type=\"shapegroup\" id=\"g\">" + shape + "</shape>" +
+                                  instance_of("g", step + R"(<rotate y="1" z="1" angle="70"/>
+                                              <translate x="3" y="1" z="-2"/>)"))
+                            .surfaces.at(0);
+      EXPECT_EQ(s.interior->id(), "in");
+      EXPECT_EQ(s.exterior->id(), "out");
+      EXPECT_NEAR(s.shape->area(), 4 * alone.shape->area(), 1e-6 * alone.shape->area());
+      int met = 0;
+      for (int i = 0; i < 200; ++i) {
+        Rng rng(1, RngDomain::Test, static_cast<std::uint64_t>(i), 0);
+        const Vec3 o = 5.0 * normalize(uniform3(rng) - 0.5);
+        const Vec3 d = normalize(1.5 * (uniform3(rng) - 0.5) - o);
+        const auto x = first_point(*alone.shape, o, d);
+        const auto y = first_point(*s.shape, T.point(o), normalize(T.vector(d)));
+        ASSERT_EQ(x.has_value(), y.has_value());
+        if (!x) continue;
+        ++met;
+        expect_near(y->position, T.point(x->position), 1e-6);
+        expect_near(y->n_g, normalize(T.normal(x->n_g)), 1e-6);
+        expect_near(y->shading.n, normalize(T.normal(x->shading.n)), 1e-6);
+        EXPECT_NEAR(length(Vec3(y->uv - x->uv, 0)), 0, 1e-6);
+        for (const int axis : {0, 1})
+          expect_near(s.shape->uv_tangents(*y)[axis], T.vector(alone.shape->uv_tangents(*x)[axis]),
+                      1e-5);
+      }
+      EXPECT_GT(met, 20);
+    }
+  }
 }
 
 TEST(Instance, ComplainsOfWhatCannotBeInstanced) {
