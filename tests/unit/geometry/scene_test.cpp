@@ -217,6 +217,97 @@ TEST(Scene, ReportsBoundariesThatOverlap) {
             1);
 }
 
+/// Within a ball of one fog a sheet beside the lamp says that there is another.
+TEST(Scene, ReportsPointLightsOfWhichBoundariesDisagree) {
+  const auto a = fog("a"), b = fog("b");
+  SceneDescription d = seen_from(
+      {0, 0, 9},
+      {boundary(make_sphere(Vec3(0), 1), a, nullptr, "ball"),
+       boundary(make_rectangle(Transform::translate({0, 0, -0.2}) * Transform::scale(Vec3(0.1))),
+                nullptr, b, "sheet")});
+  d.emitters = {make_point_emitter({0.01, 0.02, 0}, RGB(1))};
+  EXPECT_EQ(count_with(Scene(std::move(d)),
+                       "a point light lies within the closed boundary of medium 'a', but what it "
+                       "sees of the boundaries says medium 'b'"),
+            1);
+}
+
+/// The surface of a pool ends at its walls: what glows in it may be anywhere in the scene.
+TEST(Scene, LetsAnOpenBoundaryGlowBelowIt) {
+  const auto glow = fog("glow", 1);
+  const auto level = [](double y, double half) {
+    return make_rectangle(Transform::translate({0, y, 0}) * Transform::rotate({1, 0, 0}, -90) *
+                          Transform::scale(Vec3(half)));
+  };
+  SceneDescription d = seen_from({0, 2, 0}, {boundary(level(0, 1), glow, nullptr, "surface")});
+  for (int i = 0; i < 4; ++i)
+    d.surfaces.push_back(
+        wall(make_rectangle(Transform::rotate({0, 1, 0}, 90 * i) *
+                            Transform::translate({0, -0.5, -1}) * Transform::scale(Vec3(1)))));
+  d.surfaces.push_back(wall(level(-1, 1)));
+  const Scene scene(std::move(d));
+  const Emitter& emitter =
+      scene.emitter(static_cast<std::size_t>(scene.emitter_of_medium(glow.get())));
+  EmitterPoint x;
+  x.surface.position = {0.2, -0.5, 0.3};
+  EXPECT_GT(emitter.pdf_position(x), 0);
+}
+
+/// All of a room glows but for a bubble around the eye.
+TEST(Scene, LetsWhatIsOutsideOfABoundaryGlow) {
+  const auto glow = fog("glow", 1);
+  const Scene scene(seen_from(
+      Vec3(0), {boundary(make_sphere(Vec3(0), 0.5), nullptr, glow, "bubble"), wall(cube(2))}));
+  const Emitter& emitter =
+      scene.emitter(static_cast<std::size_t>(scene.emitter_of_medium(glow.get())));
+  EmitterPoint x;
+  x.surface.position = {1.2, -1.5, 1.3};
+  EXPECT_GT(emitter.pdf_position(x), 0);
+}
+
+/// Beyond the wall of a pool lies what boundaries in sight say, not the pool that is nearer.
+TEST(Scene, TakesNoWordFromBoundariesBehindWalls) {
+  const auto water = fog("water"), mist = fog("mist");
+  const auto level = make_rectangle(Transform::rotate({1, 0, 0}, -90));
+  const Scene scene(seen_from(
+      {0, 2, 0},
+      {boundary(level, water, nullptr, "surface"),
+       wall(make_cube(Transform::translate({1.1, -1, 0}) * Transform::scale({0.1, 1.2, 3}))),
+       boundary(make_sphere({3, -0.5, 0}, 0.5), mist, nullptr, "ball")}));
+  EXPECT_EQ(scene.medium_at({1.5, -0.5, 0.1}), nullptr);
+  EXPECT_EQ(scene.medium_at({0.5, -0.5, 0.1}), water.get());
+}
+
+/// A lamp that is half in fog begins its light in what is around each of its points.
+TEST(Scene, KnowsThatLampsMayReachOutOfAMedium) {
+  const auto mist = fog("mist");
+  SceneDescription d = seen_from(
+      {0, 0, -5},
+      {boundary(cube(1), mist, nullptr, "mist"),
+       wall(make_rectangle(Transform::translate({1, 0, 0}) * Transform::scale(Vec3(0.5))))});
+  d.surfaces[1].emitter = make_area_emitter(d.surfaces[1].shape, RGB(1));
+  const Scene scene(std::move(d));
+  const int emitter = scene.emitter_of_surface(1);
+  EXPECT_EQ(scene.medium_around_emitter(emitter, {0.8, 0.1, 0}, {1, 0}), mist.get());
+  EXPECT_EQ(scene.medium_around_emitter(emitter, {1.2, 0.1, 0}, {1, 0}), nullptr);
+}
+
+/// Half of space is fog: from the other half the sky shines, whichever half it is.
+TEST(Scene, SeesTheSkyBesideUnboundedFog) {
+  const auto mist = fog("mist");
+  const Vec3 x(1, 0, 0), y(0, 1, 0);
+  for (const Transform& turn :
+       {Transform(), Transform::rotate(x, 180), Transform::rotate(x, 90), Transform::rotate(x, -90),
+        Transform::rotate(y, 90), Transform::rotate(y, -90)}) {
+    SceneDescription d =
+        seen_from(Vec3(0), {boundary(make_rectangle(turn * Transform::translate({0, 0, -1}) *
+                                                    Transform::scale(Vec3(50))),
+                                     mist, nullptr, "level")});
+    d.emitters.push_back(make_constant_emitter(RGB(1)));
+    EXPECT_EQ(Scene(std::move(d)).emitter_count(), 2u) << turn.vector({0, 0, 1}).x;
+  }
+}
+
 TEST(Scene, RefusesWhatCannotBeRendered) {
   SceneDescription d = seen_from(Vec3(0), {wall(cube(1))});
   d.sensor = nullptr;

@@ -1,8 +1,11 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
 // Surfaces at one and the same place: walls at which fog ends, a floor under glass, volumes that
 // share a face. What rays meet and come through is compared with closed forms.
+#include "core/scene/contact.h"
+
 #include <gtest/gtest.h>
 
+#include "core/scene/covered_border.h"
 #include "mlt/render.h"
 #include "tests/helpers/statistics.h"
 #include "tests/unit/path/volume_scenes.h"
@@ -287,6 +290,87 @@ TEST_P(Contact, SurfacesApartAreLeftAlone) {
     ASSERT_TRUE(hit);
     ASSERT_EQ(hit->id.shape, 6u);  // the boundary, not the wall behind it
   }
+}
+
+/// A lamp so small in the side of a box of fog that points spread over the side miss it.
+TEST_P(Contact, SmallLampsInLargeFacesAreSeen) {
+  const MediumPointer haze = fog(RGB(0.5), "haze");
+  const double half = 1e-3;
+  Surface lamp =
+      surface(make_rectangle(place_ * Transform::translate({0.2345, -1, 0.3456}) *
+                             Transform::rotate({1, 0, 0}, -90) * Transform::scale({half, half, 1})),
+              make_diffuse(RGB(0)));
+  lamp.emitter = make_area_emitter(lamp.shape, RGB(1));
+  const Scene scene(
+      describe_scene({boundary(make_cube(place_), haze, nullptr), lamp}, world({0.3, 0.2, 9})));
+  Rng rng(suite_seed(), RngDomain::Test, 56, 0);
+  for (int i = 0; i < 200; ++i) {
+    const Vec3 p = inside(rng);
+    const Vec2 u = 1.98 * uniform2(rng) - 0.99;
+    const Vec3 q = Vec3(0.2345, -1, 0.3456) + half * Vec3(u.x, 0, u.y);
+    Vertex x;
+    Edge edge;
+    ASSERT_EQ(extend_to_surface(scene, point_at(world(p), haze.get()),
+                                normalize(world(q) - world(p)), x, edge),
+              ExtendResult::Reached);
+    ASSERT_GE(scene.emitter_of_surface(x.id.shape), 0);
+    ASSERT_EQ(medium_toward(scene, x, normalize(world(p) - world(q))), haze.get());
+  }
+}
+
+/// A sheet that glows and lets light through in part is no wall, nor does a wall hide it.
+TEST(Contacts, LeaveWhatShinesAndLetsLightThrough) {
+  Surface lamp = surface(make_rectangle(Transform()), make_mask(make_diffuse(RGB(0.5)), 0.5));
+  lamp.emitter = make_area_emitter(lamp.shape, RGB(1));
+  for (const auto& other : {wall(), make_null()}) {
+    const std::vector<Surface> surfaces{
+        lamp, surface(make_rectangle(Transform::scale({3, 3, 1})), other)};
+    EXPECT_TRUE(Contacts(surfaces, {surfaces[0].shape, surfaces[1].shape}).covered().empty());
+  }
+}
+
+TEST(Contacts, KnowWhatIsOpaque) {
+  PrincipledSettings clear;
+  clear.spec_trans = 1.0;
+  const std::pair<std::shared_ptr<const Bsdf>, bool> all[] = {
+      {make_diffuse(RGB(0.5)), true},
+      {wall(), true},
+      {make_conductor(RGB(0), RGB(1)), true},
+      {make_dielectric(1.5), false},
+      {make_rough_dielectric({MicrofacetKind::Ggx, 0.2, 0.2}, 1.5), false},
+      {make_thin_dielectric(1.5), false},
+      {make_mask(make_diffuse(RGB(0.5)), 0.5), false},
+      {make_null(), false},
+      {make_principled(clear), false}};
+  for (const auto& [bsdf, opaque] : all)
+    EXPECT_EQ(is_opaque(surface(make_rectangle(Transform()), bsdf)), opaque) << bsdf->name();
+}
+
+/// The border of a sheet along y at x = 0; walls stand beside it. Both of its sides have to be shut
+/// off, and behind the corner of a room only a slanting way meets a wall.
+TEST(Contacts, FindBordersCoveredWhereWallsShutOffBothSides) {
+  const auto stands_at = [](double x, double y0, double y1, double z0, double z1) {
+    const Vec3 middle(x, (y0 + y1) / 2, (z0 + z1) / 2);
+    return surface(make_rectangle(Transform::translate(middle) * Transform::rotate({0, 1, 0}, 90) *
+                                  Transform::scale({(z1 - z0) / 2, (y1 - y0) / 2, 1})),
+                   wall());
+  };
+  const auto covered = [&](std::vector<Surface> walls, double length) {
+    // Whatever is measured in parts of the scene's size.
+    walls.push_back(surface(make_rectangle(Transform::translate({0, 0, 5})), wall()));
+    walls.push_back(surface(make_rectangle(Transform::translate({0, 0, -5})), wall()));
+    std::vector<const Shape*> shapes;
+    for (const Surface& s : walls) shapes.push_back(s.shape.get());
+    return is_covered({0, {0, 0, 0}, {0, length, 0}, {1, 0, 0}, {0, 0, 1}}, walls, Accel(shapes));
+  };
+  EXPECT_TRUE(covered({stands_at(0.05, -1, 1, -1, 1)}, 0.3));
+  EXPECT_FALSE(covered({}, 0.3));
+  EXPECT_FALSE(covered({stands_at(2, -1, 1, -1, 1)}, 0.3));
+  EXPECT_FALSE(covered({stands_at(0.05, -1, 1, -1, 0)}, 0.3));
+  EXPECT_FALSE(covered({stands_at(0.05, -1, 1, 0, 1)}, 0.3));
+  EXPECT_TRUE(covered({stands_at(0.05, -1, 1, -1, 0), stands_at(0.06, -1, 1, 0, 1)}, 0.3));
+  EXPECT_FALSE(covered({stands_at(0.05, 0.12, 1, -1, 1)}, 0.3));
+  EXPECT_TRUE(covered({stands_at(0.05, 0.05, 1, -1, 1)}, 0.2));
 }
 
 }  // namespace

@@ -3,6 +3,8 @@
 // that are modelled without overlaps.
 #include <gtest/gtest.h>
 
+#include <algorithm>
+
 #include "mlt/render.h"
 #include "tests/helpers/statistics.h"
 #include "tests/unit/path/volume_scenes.h"
@@ -274,6 +276,170 @@ TEST(Overlaps, VolumesThatComeOutOfWhatTheyDeclareAroundThemAreInWhatIsBeyond) {
   const auto aside = crossings(scene, {{-5, 0.2, 0.05}, {1, 0, 0}, 0, kInfinity});
   ASSERT_EQ(aside.size(), 2u);
   EXPECT_EQ(aside[1].behind, nullptr);
+}
+
+/// Three one in the other, of which the innermost comes out of both that are around it.
+TEST(Overlaps, WhatComesOutOfAllThatIsAroundItIsInTheOpen) {
+  const auto sea = fog(RGB(1), "sea"), tank = fog(RGB(2), "tank"), ice = fog(RGB(0.5), "ice");
+  const auto box = [](double half, double top) {
+    return make_cube(Transform::translate({0, top - half, 0}) * Transform::scale(Vec3(half)));
+  };
+  const auto in = [](double n, double n_around) {
+    return make_dielectric(n / n_around, RGB(1), RGB(1), n_around);
+  };
+  const Scene scene(
+      describe_scene({boundary(box(4, 0), sea, nullptr, 0, make_dielectric(1.2)),
+                      boundary(box(1.5, -0.2), tank, sea, 0, in(1.33, 1.2)),
+                      boundary(make_sphere(Vec3(0), 0.7), ice, tank, 0, in(1.31, 1.33))}),
+      true);
+  const auto leaves_into = [&](double y, double n, const Medium* medium) {
+    const auto all = crossings(scene, {{0.01, y, 0.02}, {1, 0, 0}, 0, kInfinity});
+    ASSERT_FALSE(all.empty());
+    EXPECT_NEAR(all[0].ratio, n / 1.31, 1e-12) << y;
+    EXPECT_EQ(all[0].behind, medium) << y;
+  };
+  leaves_into(0.3, 1, nullptr);
+  leaves_into(-0.1, 1.2, sea.get());
+  leaves_into(-0.4, 1.33, tank.get());
+}
+
+/// A marble that says nothing of media, where two liquids overlap: the one that holds there, the
+/// smaller, is around it and in it.
+TEST(Overlaps, GlassThatSaysNothingOfMediaKeepsThatAroundIt) {
+  const auto water = fog(RGB(1), "water"), oil = fog(RGB(0.5), "oil");
+  const Scene scene(
+      describe_scene(
+          {boundary(make_cube(Transform::translate({0, -1, 0}) * Transform::scale({2, 1, 2})),
+                    water, nullptr, 0, make_dielectric(1.33)),
+           boundary(make_sphere(Vec3(0), 0.7), oil, nullptr, 0, make_dielectric(1.4)),
+           surface(make_sphere({0, -0.4, 0}, 0.1), make_dielectric(1.5))}),
+      true);
+  const auto all = crossings(scene, {{0.01, 3, 0.02}, {0, -1, 0}, 0, kInfinity});
+  ASSERT_EQ(all.size(), 5u);
+  const double ratios[] = {1.4, 1.5 / 1.4, 1.4 / 1.5, 1.33 / 1.4, 1 / 1.33};
+  for (int i = 0; i < 5; ++i) EXPECT_NEAR(all[i].ratio, ratios[i], 1e-12) << i;
+  for (int i = 0; i < 3; ++i) EXPECT_EQ(all[i].behind, oil.get()) << i;
+  EXPECT_EQ(all[3].behind, water.get());
+}
+
+/// Where fog lies upon water, the water's surface is there, whichever of the two comes first.
+TEST(Overlaps, FogUponWaterLeavesItsSurface) {
+  const auto water = fog(RGB(1), "water"), mist = fog(RGB(0.5), "mist");
+  for (const int priority : {0, 1})
+    for (const double half : {0.5, 3.0}) {
+      const auto over =
+          make_cube(Transform::translate({0, half, 0}) * Transform::scale(Vec3(half)));
+      const Scene scene(describe_scene({boundary(make_cube(Transform::translate({0, -1, 0})), water,
+                                                 nullptr, 0, make_dielectric(1.33)),
+                                        boundary(over, mist, nullptr, priority)},
+                                       {0.3, 9, 6}),
+                        true);
+      const auto down = crossings(scene, {{0.01, 7, 0.02}, {0, -1, 0}, 0, kInfinity});
+      ASSERT_EQ(down.size(), 3u) << priority << ' ' << half;
+      EXPECT_EQ(down[0].behind, mist.get());
+      EXPECT_NEAR(down[1].ratio, 1.33, 1e-12);
+      EXPECT_EQ(down[1].behind, water.get());
+      const auto up = crossings(scene, {{0.01, -7, 0.02}, {0, 1, 0}, 0, kInfinity});
+      ASSERT_EQ(up.size(), 3u) << priority << ' ' << half;
+      EXPECT_NEAR(up[1].ratio, 1 / 1.33, 1e-12);
+      EXPECT_EQ(up[1].behind, mist.get());
+    }
+}
+
+/// Pieces of one medium and of two priorities are two volumes.
+TEST(Overlaps, PiecesOfOneFogMayHaveTwoPriorities) {
+  const auto a = fog(RGB(1), "a"), b = fog(RGB(2), "b");
+  const Scene scene(describe_scene({boundary(make_sphere({-1, 0, 0}, 0.8), a, nullptr, 0),
+                                    boundary(make_sphere({1, 0, 0}, 0.8), a, nullptr, 2),
+                                    boundary(make_sphere(Vec3(0), 0.9), b, nullptr, 1)}),
+                    true);
+  EXPECT_EQ(scene.medium_at({-0.5, 0.01, 0.02}), b.get());
+  EXPECT_EQ(scene.medium_at({0.5, 0.01, 0.02}), a.get());
+}
+
+/// The eye in two pieces of one fog at once, and within another: nothing is doubtful.
+TEST(Overlaps, TwoPiecesOfOneFogHoldTheEye) {
+  const auto a = fog(RGB(1), "a"), b = fog(RGB(2), "b");
+  SceneDescription d = describe_scene({boundary(make_sphere({-0.3, 0, 0}, 0.8), a, b),
+                                       boundary(make_sphere({0.3, 0, 0}, 0.8), a, b),
+                                       boundary(make_sphere(Vec3(0), 3), b, nullptr)},
+                                      {0.05, 0.03, 0.1});
+  d.sensor_medium = a;
+  d.sensor_medium_declared = true;
+  const Scene scene(std::move(d));
+  EXPECT_TRUE(scene.warnings().empty()) << scene.warnings().front();
+}
+
+TEST(Overlaps, PiecesThatAreInsideOutAreReported) {
+  const auto a = fog(RGB(1), "a");
+  for (const bool flip : {false, true}) {
+    const Scene scene(describe_scene(
+        {boundary(make_cube(Transform()), a, nullptr),
+         boundary(make_cube(Transform::translate({1, 0.3, 0.2}), flip), a, nullptr)}));
+    EXPECT_EQ(std::ranges::any_of(scene.warnings(),
+                                  [](const std::string& warning) {
+                                    return warning.find("partly inside out") != std::string::npos;
+                                  }),
+              flip);
+    EXPECT_EQ(scene.warnings().empty(), !flip);
+  }
+}
+
+/// One block of ice, of which the lid is told by its index against air and the rest by that against
+/// water.
+TEST(Overlaps, IndicesMayBeToldAgainstWhateverIsOutside) {
+  const auto ice = fog(RGB(0.5), "ice"), mist = fog(RGB(1), "mist");
+  const auto dry = make_dielectric(1.31), wet = make_dielectric(1.31 / 1.33, RGB(1), RGB(1), 1.33);
+  const Scene scene(describe_scene({boundary(disk(1, 1, false), ice, nullptr, 0, dry),
+                                    boundary(tube(-1, 1, 1, false), ice, nullptr, 0, wet),
+                                    boundary(disk(-1, 1, true), ice, nullptr, 0, wet),
+                                    boundary(make_sphere({0, 0, 1}, 0.5), mist, nullptr)}),
+                    true);
+  const auto down = crossings(scene, {{0.01, 0.02, 3}, {0, 0, -1}, 0, kInfinity});
+  ASSERT_GE(down.size(), 2u);
+  EXPECT_EQ(down[0].behind, mist.get());
+  EXPECT_NEAR(down[1].ratio, 1.31, 1e-12);
+}
+
+/// An open-topped tank of walls, which bound the water as well: mist that reaches into it finds one
+/// index there.
+TEST(Overlaps, WallsMayCloseWhatRefracts) {
+  const auto water = fog(RGB(1), "water"), mist = fog(RGB(0.5), "mist");
+  const auto wall = make_twosided(make_diffuse(RGB(0.5)));
+  const Scene scene(
+      describe_scene({boundary(disk(0, 1, false), water, nullptr, 0, make_dielectric(1.33)),
+                      boundary(tube(-1, 0, 1, false), water, nullptr, 0, wall),
+                      boundary(disk(-1, 1, true), water, nullptr, 0, wall),
+                      boundary(make_sphere(Vec3(0), 0.5), mist, nullptr)}),
+      true);
+  const auto down = crossings(scene, {{0.01, 0.02, 3}, {0, 0, -1}, 0, kInfinity});
+  ASSERT_GE(down.size(), 3u);
+  EXPECT_EQ(down[0].behind, mist.get());
+  EXPECT_NEAR(down[1].ratio, 1.33, 1e-12);
+  EXPECT_EQ(down[1].behind, mist.get());
+  EXPECT_EQ(down[2].behind, water.get());
+}
+
+/// A lamp shines where fog lies upon it as well.
+TEST(Overlaps, LampsThatBoundMediaShineEverywhere) {
+  const auto a = fog(RGB(1), "a"), b = fog(RGB(2), "b");
+  Surface lamp = boundary(make_sphere(Vec3(0), 0.5), a, nullptr, 0, make_diffuse(RGB(0.5)));
+  lamp.emitter = make_area_emitter(lamp.shape, RGB(1));
+  const Scene scene(
+      describe_scene({lamp, boundary(make_cube(Transform::translate({1, 0, 0})), b, nullptr)}),
+      true);
+  for (const double x : {-0.4, -0.1, 0.1, 0.4}) {
+    Ray ray{{x, 0.01, 3}, {0, 0, -1}, 0, kInfinity};
+    std::optional<Hit> hit;
+    PrimitiveId from = kNoPrimitive;
+    int shining = 0;
+    while ((hit = scene.accel().intersect(ray, from))) {
+      shining += scene.emitter_of_surface(hit->id.shape) == 0;
+      ray.t_min = hit->t;
+      from = hit->id;
+    }
+    EXPECT_EQ(shining, 2) << x;
+  }
 }
 
 TEST(Overlaps, ThatCannotBeResolvedAreReported) {
