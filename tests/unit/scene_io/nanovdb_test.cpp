@@ -117,6 +117,21 @@ TEST_F(NanoFile, HasTheValuesOfNanoVdb) {
   expect_agreement<nanovdb::FpN>("FpN");
 }
 
+/// Nothing but one tile.
+TEST_F(NanoFile, ATileAloneIsThere) {
+  nanovdb::GridBuilder<float> builder(0, nanovdb::GridClass::FogVolume);
+  builder([](const Coord&) { return 0.75f; },
+          nanovdb::CoordBBox(Coord(8, 0, -8), Coord(15, 7, -1)));
+  std::vector<Handle> handles;
+  handles.push_back(builder.getHandle(1.0, nanovdb::Vec3d(0), "density"));
+  write("g.nvdb", handles, Codec::NONE);
+  const auto medium = load("g.nvdb");
+  for (const Vec3& p : {Vec3(8, 0, -8), Vec3(15, 7, -1), Vec3(11.3, 4.2, -5.5)})
+    EXPECT_EQ(medium->sigma_t(p), RGB(0.75));
+  EXPECT_EQ(medium->sigma_t(Vec3(16.1, 4, -4)), RGB(0));
+  EXPECT_EQ(medium->sigma_t(Vec3(11, 4, 0.1)), RGB(0));
+}
+
 /// The map of the file is the one that NanoVDB applies.
 TEST_F(NanoFile, LiesWhereItsMapSays) {
   const Handle handle = random_grid<float>("density");

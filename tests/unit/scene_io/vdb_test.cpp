@@ -251,6 +251,20 @@ TEST_F(VdbFile, InstancesShareATree) {
   expect_agreement<openvdb::FloatGrid>("g.vdb", "b");
 }
 
+/// What an instance is, it says itself: distances and densities may share their numbers.
+TEST_F(VdbFile, InstancesAreOfTheirOwnClass) {
+  const auto a = random_grid<openvdb::FloatGrid>("a");
+  const openvdb::GridBase::Ptr b = a->copyGrid();
+  b->setName("b");
+  for (const bool first : {true, false}) {
+    a->setGridClass(first ? openvdb::GRID_LEVEL_SET : openvdb::GRID_FOG_VOLUME);
+    b->setGridClass(first ? openvdb::GRID_FOG_VOLUME : openvdb::GRID_LEVEL_SET);
+    write("g.vdb", {a, b}, kBlosc);
+    expect_error("g.vdb", "is a level set", grid(first ? "a" : "b"));
+    EXPECT_NO_THROW(load("g.vdb", grid(first ? "b" : "a")));
+  }
+}
+
 TEST_F(VdbFile, AnEmptyGridIsEmpty) {
   const auto empty = openvdb::FloatGrid::create();
   empty->setName("density");
