@@ -260,7 +260,9 @@ TEST(Render, CountsWhatIsNotFinite) {
     options.overrides.emplace_back("max_depth", "2");
     const RenderResult result = render(scene, options);
     EXPECT_GT(result.non_finite, 0u);
-    if (integrator == std::string("path")) EXPECT_EQ(result.non_finite, result.samples / 2);
+    if (integrator == std::string("path")) {
+      EXPECT_EQ(result.non_finite, result.samples / 2);
+    }
     EXPECT_TRUE(std::isfinite(result.b) && std::isfinite(result.b_stderr));
     for (const float value : result.image.pixels) ASSERT_TRUE(std::isfinite(value));
   }
