@@ -55,6 +55,15 @@ TEST(Diagnostics, ScaleReductionIsOneForMixedChainsAndLargeForStuckOnes) {
   EXPECT_TRUE(std::isinf(of_two_states(1).r_hat));
 }
 
+/// Two chains of ten steps with means 0 and 2, each with a variance of 1: the means have a variance
+/// of 2, hence R̂² = (1 + 2)/1, and both are worth 2 · 3/2 samples.
+TEST(Diagnostics, FewChainsAreNoBetterThanTheyAre) {
+  const std::vector<ChainMoments> moments{{0, 10}, {20, 50}};
+  const Convergence c = convergence(moments, std::vector<double>(2, 10));
+  EXPECT_DOUBLE_EQ(c.r_hat, std::sqrt(3));
+  EXPECT_DOUBLE_EQ(c.effective_samples, 3);
+}
+
 TEST(Diagnostics, AConstantIsConverged) {
   const std::vector<ChainMoments> moments(4, ChainMoments{5, 2.5});
   const Convergence c = convergence(moments, std::vector<double>(4, 10));

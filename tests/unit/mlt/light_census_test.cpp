@@ -7,6 +7,8 @@
 #include "core/geometry/shapes.h"
 #include "core/scene/bsdf/bsdfs.h"
 #include "core/scene/emitters.h"
+#include "core/scene/sensors.h"
+#include "media/media.h"
 #include "tests/helpers/statistics.h"
 #include "tests/helpers/test_scenes.h"
 
@@ -129,6 +131,49 @@ TEST(LightCensus, SeesPointLightsShutUpInGlass) {
   EXPECT_GT(census.seen_through, 0);
   EXPECT_EQ(census.by_next_event.mean, 0);
   EXPECT_GT(census.surface_caustic.mean, 0);
+}
+
+/// Glass in a box of fog under the lamp, of which the camera sees but the floor below: then light
+/// tracing makes all there is, and tells caustics in fog from those on the floor, and what has been
+/// in the fog at all.
+TEST(LightCensus, TellsFogFromFloorWhereNothingIsSeenThrough) {
+  SceneDescription d = make_test_scene("glass-sphere-fog");
+  const auto fog = make_homogeneous_medium(RGB(2), RGB(0.95), make_isotropic_phase());
+  const Vec3 middle(0.3, 0.8, 0.2);
+  d.sensor_medium = nullptr;
+  d.sensor_medium_declared = false;
+  d.surfaces.back().exterior = fog;
+  d.surfaces.back().shape = make_sphere(middle, 0.3);
+  Surface box = d.surfaces.back();
+  box.bsdf = make_null();
+  box.interior = fog;
+  box.exterior = nullptr;
+  box.shape = make_cube(Transform::translate(middle) * Transform::scale(Vec3(0.5)));
+  d.surfaces.push_back(std::move(box));
+  PerspectiveSettings camera;
+  camera.to_world = Transform::look_at(Vec3(0, -0.4, 3), Vec3(0.1, -0.95, 0), Vec3(0, 1, 0));
+  camera.fov_x_degrees = 20;
+  camera.width = camera.height = d.film.width;
+  d.sensor = make_perspective_sensor(camera);
+  const Scene scene(std::move(d));
+  const LightCensus census = take_light_census(scene, kSettings, kSamples, 1);
+  EXPECT_EQ(census.seen_through, 0);
+  EXPECT_EQ(census.caustic_seen_through.mean, 0);
+  EXPECT_GT(census.volume_caustic.mean, 0.1 * census.surface_caustic.mean);
+  const auto light = make_light_tracer(scene, kSettings);
+  const auto caustic = [](bool in_medium) {
+    return [in_medium](const Workspace& w, const Contribution& c) {
+      std::size_t i = 1;
+      while (i < static_cast<std::size_t>(c.s) && w.light[i].x.degenerate) ++i;
+      return i > 1 && i < static_cast<std::size_t>(c.s) && w.light[i].x.in_medium() == in_medium;
+    };
+  };
+  expect_same(census.surface_caustic, mean_of(*light, caustic(false)));
+  expect_same(census.volume_caustic, mean_of(*light, caustic(true)));
+  expect_same(census.in_media, mean_of(*light, [](const Workspace& w, const Contribution& c) {
+                return std::any_of(w.light.begin(), w.light.begin() + c.s,
+                                   [](const SubpathVertex& v) { return v.x.in_medium(); });
+              }));
 }
 
 }  // namespace

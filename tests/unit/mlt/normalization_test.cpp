@@ -140,5 +140,18 @@ TEST(Normalization, StandardErrorIsThatOfTheMean) {
   EXPECT_DOUBLE_EQ(m.standard_error, std::sqrt(6.0 / 8));
 }
 
+/// Of 100 samples a group, half 0 and half 2 have a variance of 1 and their mean of 1/100; in two
+/// groups half are 0.2 and 2.2. The mean of all is 1.05: six groups are off by −0.05, two by 0.15,
+/// in units of a standard error of 0.1.
+TEST(Normalization, TellsHowGroupsDisagree) {
+  Normalization n;
+  for (int g = 0; g < Film::kGroups; ++g) {
+    BridgeSums sums;
+    for (int i = 0; i < 100; ++i) sums.add_sample((i % 2 ? 2 : 0) + (g < 2 ? 0.2 : 0), 1);
+    n.add(g, sums);
+  }
+  EXPECT_NEAR(n.disagreement(), 6 * sqr(0.5) + 2 * sqr(1.5), 1e-9);
+}
+
 }  // namespace
 }  // namespace fogbow

@@ -3,6 +3,8 @@
 
 #include <gtest/gtest.h>
 
+#include <tuple>
+
 #include "tests/helpers/test_scenes.h"
 
 namespace fogbow {
@@ -68,6 +70,77 @@ TEST(Pilot, LearnsThePictureAndNotItsFireflies) {
   EXPECT_NEAR(pilot.techniques.at(3).at(1) / (1 << 14), 1.5, 0.05);
   EXPECT_GT(pilot.techniques.at(4).at(3), 0);
   EXPECT_GT(pilot.f_star, 0);
+}
+
+/// As bright everywhere, to the rim.
+class EvenPicture final : public Estimator {
+ public:
+  const char* name() const override { return "even picture"; }
+  void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
+    const double x = eye.next(), y = eye.next();
+    w.contributions.clear();
+    w.add({{x, y}, RGB(2), 3, 1, 2});
+  }
+};
+
+TEST(Pilot, SeesNoRimInAnEvenPicture) {
+  const Pilot pilot = run_pilot(EvenPicture(), 1, 7, 1 << 18);
+  const double middle = pilot.importance(Vec2(0.5));
+  for (const Vec2 raster : {Vec2(0, 0), Vec2(1, 1), Vec2(0, 0.5), Vec2(0.5, 1)})
+    EXPECT_NEAR(pilot.importance(raster) / middle, 1, 0.05);
+}
+
+/// Its left half is three times as bright as its right.
+class HalvedPicture final : public Estimator {
+ public:
+  const char* name() const override { return "halved picture"; }
+  void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
+    const double x = eye.next(), y = eye.next();
+    w.contributions.clear();
+    w.add({{x, y}, RGB(x < 0.5 ? 3 : 1), 3, 1, 2});
+  }
+};
+
+/// f* of a sample is its luminance times the importance of its place.
+TEST(Pilot, KnowsTheMeanOfTheWeightedPicture) {
+  const Pilot pilot = run_pilot(HalvedPicture(), 1, 7, 1 << 16);
+  double expected = 0;
+  constexpr int n = 256;
+  for (int i = 0; i < n * n; ++i) {
+    const Vec2 raster = (Vec2(i % n, i / n) + 0.5) / double(n);
+    expected += (raster.x < 0.5 ? 3 : 1) * pilot.importance(raster) / (n * n);
+  }
+  EXPECT_NEAR(pilot.f_star / expected, 1, 0.02);
+  EXPECT_LT(expected, 1.96);  // without the weights it were 2
+}
+
+/// Cells are squares, 64 along the longer side.
+TEST(Pilot, HasAsManyCellsAcrossAsThePictureIsWide) {
+  const auto steps = [](const PictureImportance& w, const Vec2& direction) {
+    int n = 1;
+    for (int i = 1; i < 4096; ++i)
+      n += w(0.001 + (i + 0.5) / 4096 * direction) != w(0.001 + (i - 0.5) / 4096 * direction);
+    return n;
+  };
+  for (const auto& [aspect, across, down] : {std::tuple(4.0, 64, 16), {0.5, 32, 64}}) {
+    const PictureImportance w = run_pilot(EvenPicture(), aspect, 7, 1 << 14).importance;
+    EXPECT_EQ(steps(w, {1, 0}), across);
+    EXPECT_EQ(steps(w, {0, 1}), down);
+  }
+}
+
+/// A picture that few samples know is looked at for longer.
+TEST(Pilot, GoesOnUntilItKnowsEnough) {
+  const auto samples = [](double least_effective) {
+    double sum = 0;
+    for (const auto& row : run_pilot(EvenPicture(), 1, 7, 1, least_effective).techniques)
+      for (const double value : row) sum += value / 2;
+    return sum;
+  };
+  EXPECT_DOUBLE_EQ(samples(0), 1024);
+  EXPECT_DOUBLE_EQ(samples(1024), 1024);
+  EXPECT_DOUBLE_EQ(samples(1025), 2048);
+  EXPECT_DOUBLE_EQ(samples(1e9), 64 * 1024);
 }
 
 }  // namespace
