@@ -1,4 +1,7 @@
 // SPDX-License-Identifier: GPL-3.0-or-later
+#include "media/media.h"
+#include "media/mie.h"
+#include "media/table_phase.h"
 #include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow {
@@ -235,6 +238,27 @@ TEST(Phase, Plugins) {
                     0.6) *
                   sphere,
               0.75 * 1.36, 1e-3);
+  // Henyey and Greenstein's mean cosine of 0.8 in Draine's function with alpha = 1 (Draine 2003).
+  EXPECT_NEAR(load_medium(folder, R"(<phase type="draine"/>)")->phase().mean_cosine(),
+              0.8 * (1 + (3 + 2 * 0.64) / 5) / (1 + (1 + 2 * 0.64) / 3), 1e-12);
+  // Each channel has a wavelength, an index and an absorption of its own.
+  const auto expect_droplets = [&](const std::string& properties, const DropletSettings& s) {
+    const auto medium = load_medium(folder, R"(<phase type="mie"><float name="radius" value="0.3"/>
+        <float name="spread" value="0.1"/>)" + properties +
+                                                "</phase>");
+    const auto expected = make_table_phase(Droplets(s).table());
+    for (const double cosine : {-0.9, 0.1, 0.8}) {
+      const Vec3 to(std::sqrt(1 - cosine * cosine), 0, -cosine);
+      EXPECT_EQ(medium->phase().f_p({0, 0, 1}, to), expected->f_p({0, 0, 1}, to)) << properties;
+    }
+  };
+  expect_droplets("", water_droplets(0.3, 0.1));
+  DropletSettings soot = water_droplets(0.3, 0.1);
+  soot.index[0] = {1.5, 0.1};
+  soot.index[1] = {1.6, 0.4};
+  soot.index[2] = {1.7, 0};
+  expect_droplets(R"(<rgb name="index" value="1.5 1.6 1.7"/><rgb name="k" value="0.1 0.4 0"/>)",
+                  soot);
   // The compact form is not exact, and the same in all channels.
   const std::string compact =
       R"(<phase type="mie"><float name="radius" value="1"/><boolean name="compact" value="true"/>)";

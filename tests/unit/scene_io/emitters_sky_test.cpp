@@ -42,6 +42,11 @@ TEST(SunSky, ShinesByItsDefaults) {
   EXPECT_LT(light_from(scene, normalize(sun + Vec3(0.01, 0, 0))).x, 10);
   EXPECT_GT(light_from(scene, Vec3(0, 0, 1)).z, 0.01);
   EXPECT_EQ(light_from(scene, Vec3(0, 0.1, -1)), RGB(0));
+  // It stands in the sky, and is turned with it.
+  const auto turned = folder.load(
+      emitter("sunsky", R"(<transform name="to_world"><rotate x="1" angle="-90"/></transform>)"));
+  EXPECT_GT(light_from(turned, {sun.x, sun.z, -sun.y}).x, 1e4);
+  EXPECT_LT(light_from(turned, sun).x, 10);
 }
 
 TEST(SunSky, TurnsWithItsTransformAndScales) {
@@ -138,6 +143,14 @@ TEST(Projector, ShinesByItsPicture) {
   EXPECT_NEAR(e.L_e(*x, normalize(Vec3(-0.9, 0.4, -1))).x, 6 * kPi * std::pow(1.97, 1.5), 1e-9);
   EXPECT_EQ(e.L_e(*x, normalize(Vec3(0.9, 0.4, -1))), RGB(0));
   EXPECT_EQ(e.L_e(*x, normalize(Vec3(-0.9, 0.51, -1))), RGB(0));
+  // Along y, of a picture twice as wide as it is high.
+  const auto wide = folder.load(emitter("projector", R"(<texture type="bitmap" name="irradiance">
+      <string name="filename" value="a.exr"/><string name="filter_type" value="nearest"/></texture>
+      <float name="fov" value="90"/><string name="fov_axis" value="y"/>)"));
+  const auto y = wide.emitters.at(0)->sample_position(Vec3(0.5));
+  EXPECT_GT(wide.emitters[0]->L_e(*y, normalize(Vec3(1.9, 0.9, 1))).x, 0);
+  EXPECT_EQ(wide.emitters[0]->L_e(*y, normalize(Vec3(2.1, 0, 1))), RGB(0));
+  EXPECT_EQ(wide.emitters[0]->L_e(*y, normalize(Vec3(0, 1.1, 1))), RGB(0));
   // 38.2 degrees from edge to edge, and white, if nothing is said.
   const auto standard = folder.load(emitter("projector", ""));
   const auto o = standard.emitters.at(0)->sample_position(Vec3(0.5));

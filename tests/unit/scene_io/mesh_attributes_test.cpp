@@ -145,6 +145,15 @@ TEST_F(MeshAttributes, AreCheckedInsideOtherTextures) {
   EXPECT_NE(folder_.error(board).find("from 0.000000 to 1.500000"), std::string::npos);
   folder_.write("a.ply", ply(floats("r g b"), kColors));
   EXPECT_NO_THROW(folder_.load(board));
+  // The scale counts: half of what is too bright is not, twice of what is right may be.
+  const auto scaled = [&](const char* values, const std::string& scale) {
+    return shape(ply(floats("r g b"), {"0 0 0", values, "0 0 0", "0 0 0"}),
+                 R"(<string name="name" value="vertex_color"/><float name="scale" value=")" +
+                     scale + "\"/>");
+  };
+  EXPECT_NO_THROW(folder_.load(scaled("1.5 0 0", "0.5")));
+  EXPECT_NE(folder_.error(scaled("0.75 0 0", "2")).find("from 0.000000 to 1.500000"),
+            std::string::npos);
   EXPECT_NE(folder_
                 .error(R"(<emitter type="projector"><texture type="mesh_attribute"
       name="irradiance"><string name="name" value="vertex_color"/></texture></emitter>)")

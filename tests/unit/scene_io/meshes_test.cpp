@@ -218,6 +218,19 @@ TEST(Obj, AllFormsOfFaces) {
   EXPECT_EQ(mesh.normals[4], Vec3(0, 1, 0));
 }
 
+/// Of a fold each side keeps its normals, and of a seam its texture coordinates.
+TEST(Obj, CornersThatDifferAreVerticesOfTheirOwn) {
+  const auto mesh = parse_obj(
+      "v 0 0 0\nv 1 0 0\nv 0 1 0\nv 0 0 1\nvt 0 0\nvt 1 1\nvn 0 0 1\nvn 1 0 0\n"
+      "f 1/1/1 2/1/1 3/1/1\nf 1/1/2 3/1/2 4/1/2\nf 1/2/2 4/1/2 2/1/2\n",
+      "m");
+  const Vec3 normals[] = {Vec3(0, 0, 1), Vec3(1, 0, 0), Vec3(1, 0, 0)};
+  for (int i = 0; i < 3; ++i)
+    for (const std::uint32_t v : mesh.triangles.at(i)) EXPECT_EQ(mesh.normals.at(v), normals[i]);
+  EXPECT_EQ(mesh.uvs.at(mesh.triangles[1][0]), Vec2(0));
+  EXPECT_EQ(mesh.uvs.at(mesh.triangles[2][0]), Vec2(1));
+}
+
 TEST(Obj, FacesWithoutNormals) {
   const auto plain = parse_obj("v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3", "m");
   EXPECT_TRUE(plain.normals.empty());
@@ -260,6 +273,19 @@ TEST(Obj, ErrorsNameTheirPlace) {
             "m:4:8: expected space after the corner of a face, found \".5\"");
 }
 
+/// As it lies in a file of one mesh.
+std::string packed_mesh(int version, const std::string& raw) {
+  std::string packed(compressBound(raw.size()), '\0');
+  uLongf size = packed.size();
+  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
+           reinterpret_cast<const Bytef*>(raw.data()), raw.size());
+  packed.resize(size);
+  std::string file;
+  put(file, std::uint16_t{0x041C}, false);
+  put(file, static_cast<std::uint16_t>(version), false);
+  return file + packed;
+}
+
 /// A mesh of two triangles, its header and flags as Mitsuba 0.6's documentation lists them.
 template <class T>
 std::string serialized_mesh(int version, std::uint32_t flags, double shift = 0) {
@@ -276,15 +302,7 @@ std::string serialized_mesh(int version, std::uint32_t flags, double shift = 0) 
   if (flags & 2) numbers({0, 0, 1, 0, 1, 0.25, 0, 1});
   if (flags & 8) numbers({1, 0, 0, 1, 0, 0, 1, 0, 0, 1, 0, 0});
   for (const std::uint32_t v : {0, 1, 2, 0, 2, 3}) put(raw, v, false);
-  std::string packed(compressBound(raw.size()), '\0');
-  uLongf size = packed.size();
-  compress(reinterpret_cast<Bytef*>(packed.data()), &size,
-           reinterpret_cast<const Bytef*>(raw.data()), raw.size());
-  packed.resize(size);
-  std::string file;
-  put(file, std::uint16_t{0x041C}, false);
-  put(file, static_cast<std::uint16_t>(version), false);
-  return file + packed;
+  return packed_mesh(version, raw);
 }
 
 std::string serialized_file(int version, const std::vector<std::string>& meshes) {
@@ -298,6 +316,25 @@ std::string serialized_file(int version, const std::vector<std::string>& meshes)
   }
   put(ends, static_cast<std::uint32_t>(meshes.size()), false);
   return file + ends;
+}
+
+/// More vertices and triangles than are read at a time.
+TEST(Serialized, LargeMeshesAreWhole) {
+  constexpr std::uint32_t n = 40000;
+  std::string raw;
+  put(raw, 0x1000u, false);
+  put(raw, std::uint64_t{n}, false);
+  put(raw, std::uint64_t{n - 2}, false);
+  for (std::uint32_t i = 0; i < 3 * n; ++i) put(raw, static_cast<float>(i), false);
+  for (std::uint32_t i = 0; i + 2 < n; ++i)
+    for (const std::uint32_t v : {i, i + 1, i + 2}) put(raw, v, false);
+  const auto mesh = parse_serialized(packed_mesh(3, raw), "m", 0).mesh;
+  ASSERT_EQ(mesh.positions.size(), n);
+  ASSERT_EQ(mesh.triangles.size(), n - 2);
+  for (std::uint32_t i = 0; i < n; ++i)
+    ASSERT_EQ(mesh.positions[i], Vec3(3 * i, 3 * i + 1, 3 * i + 2));
+  for (std::uint32_t i = 0; i + 2 < n; ++i)
+    ASSERT_EQ(mesh.triangles[i], (Triangle{i, i + 1, i + 2}));
 }
 
 TEST(Serialized, EveryVersionPrecisionAndAttribute) {

@@ -62,6 +62,9 @@ TEST_F(TextureTest, BitmapOptions) {
   EXPECT_EQ(reflectance(bitmap(mirror), {1.6, 0.5}), RGB(0.25));
   const std::string moved = nearest + R"(<transform name="to_uv"><translate x="0.5"/></transform>)";
   EXPECT_EQ(reflectance(bitmap(moved), {0.1, 0.5}), RGB(0.75));
+  const std::string dense = nearest + R"(<transform name="to_uv"><scale x="2"/></transform>)";
+  EXPECT_EQ(reflectance(bitmap(dense), {0.3, 0.5}), RGB(0.75));
+  EXPECT_EQ(reflectance(bitmap(dense), {0.6, 0.5}), RGB(0.25));
   EXPECT_TRUE(folder_.warnings.empty());
 }
 
