@@ -256,5 +256,28 @@ TEST(Compare, DifferenceImages) {
       std::isnan(difference_image(image, reference, DifferenceStyle::FalseColor).at(1, 0, 0)));
 }
 
+/// Without errors the worst tile is that of the largest difference in parts of the reference, and
+/// in the dark of a tenth of the mean, which is also the floor of false colours.
+TEST(Compare, DifferencesAreRelativeToThePicture) {
+  Image reference(3, 1, {"R", "G", "B"});
+  for (int c = 0; c < 3; ++c) {
+    reference.at(0, 0, c) = 10;
+    reference.at(1, 0, c) = 2;
+  }
+  Image image = reference;  // off by 0.6/10.08, by 0.3/2.04 and by 0.1/0.4
+  for (int c = 0; c < 3; ++c) {
+    image.at(0, 0, c) += 0.6f;
+    image.at(1, 0, c) += 0.3f;
+    image.at(2, 0, c) += 0.1f;
+  }
+  ComparisonOptions options;
+  options.tile_size = 1;
+  EXPECT_EQ(worst_tiles(compare_images(image, reference, options), 3),
+            (std::vector<std::size_t>{2, 1, 0}));
+  const Image color = difference_image(image, reference, DifferenceStyle::FalseColor, 1);
+  EXPECT_NEAR(color.at(2, 0, 1), 1 - 0.1 / 0.4, 1e-5);
+  EXPECT_NEAR(color.at(1, 0, 1), 1 - 0.3 / std::hypot(2, 0.4), 1e-5);
+}
+
 }  // namespace
 }  // namespace fogbow

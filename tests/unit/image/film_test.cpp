@@ -154,6 +154,17 @@ TEST(Film, RefusesAndCountsWhatIsNotFinite) {
   Film other(box_film(2, 2), -20);
   other.add(film);
   EXPECT_EQ(other.refused(), refused);
+  const Film moved = std::move(other);
+  EXPECT_EQ(moved.refused(), refused);
+}
+
+/// Sums of one filter are none of another, though it reaches as far.
+TEST(Film, AddsOnlyWhatHasItsFilter) {
+  Film box(settings(2, 2, make_box_filter(1)), -20);
+  const Film same(settings(2, 2, make_box_filter(1)), -20),
+      tent(settings(2, 2, make_tent_filter(1)), -20);
+  EXPECT_NO_THROW(box.add(same));
+  EXPECT_THROW(box.add(tent), Error);
 }
 
 TEST(Film, DevelopsMeansAndTheWindowOfACrop) {
