@@ -175,6 +175,8 @@ TEST(PhaseFunction, Moments) {
   // ∫μ(1 + μ)/2 dμ = 1/3 and ∫P₂(1 + μ)/2 dμ = 0; |μ| has ∫P₂|μ| dμ = 1/4.
   expect_moments(*make_tabulated_phase({0, 1}), 0.5, 1.0 / 3, 0);
   expect_moments(*make_tabulated_phase({1, 0, 1}), 1, 0, 0.25);
+  // No symmetry: 2μ from 0 to 1.
+  expect_moments(*make_tabulated_phase({0, 0, 1}), 1, 2.0 / 3, 0.25);
   expect_moments(*make_blend_phase(make_henyey_greenstein(0.8), make_rayleigh_phase(), 0.25), 0.2,
                  0.6, 0.75 * 0.64 + 0.025);
 }
