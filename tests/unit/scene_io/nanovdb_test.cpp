@@ -12,22 +12,9 @@ namespace {
 
 using nanovdb::Coord;
 using nanovdb::io::Codec;
+using testing::make_value;
+using testing::to_rgb;
 using Handle = nanovdb::GridHandle<>;
-
-template <class Value>
-Value make_value(double x) {
-  if constexpr (std::is_arithmetic_v<Value>)
-    return Value(x);
-  else
-    return Value(x, 0.5 * x, 2 - x);
-}
-template <class Value>
-RGB to_rgb(const Value& v) {
-  if constexpr (std::is_arithmetic_v<Value>)
-    return RGB(v);
-  else
-    return {v[0], v[1], v[2]};
-}
 
 /// Rows are those of the matrix that takes columns.
 const double kLinear[3][3] = {{0.5, 0.125, 0}, {-0.25, 0.75, 0.1}, {0, 0.2, 1.5}};

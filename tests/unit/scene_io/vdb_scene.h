@@ -2,12 +2,29 @@
 #pragma once
 #include <memory>
 #include <string>
+#include <type_traits>
 
 #include "core/math/random.h"
 #include "tests/helpers/statistics.h"
 #include "tests/unit/scene_io/scene_folder.h"
 
 namespace fogbow::testing {
+
+/// Of a grid with one channel or three.
+template <class Value>
+Value make_value(double x) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return Value(x);
+  else
+    return Value(x, 0.5 * x, 2 - x);
+}
+template <class Value>
+RGB to_rgb(const Value& v) {
+  if constexpr (std::is_arithmetic_v<Value>)
+    return RGB(v);
+  else
+    return {v[0], v[1], v[2]};
+}
 
 /// A medium whose extinction is a grid of a file.
 class VdbScene : public ::testing::Test {

@@ -12,25 +12,12 @@ namespace {
 
 using openvdb::Coord;
 using openvdb::CoordBBox;
+using testing::make_value;
+using testing::to_rgb;
 
 constexpr std::uint32_t kPlain = openvdb::io::COMPRESS_NONE, kZip = openvdb::io::COMPRESS_ZIP,
                         kMask = openvdb::io::COMPRESS_ACTIVE_MASK,
                         kBlosc = openvdb::io::COMPRESS_BLOSC;
-
-template <class Value>
-Value make_value(double x) {
-  if constexpr (std::is_arithmetic_v<Value>)
-    return Value(x);
-  else
-    return Value(x, 0.5 * x, 2 - x);
-}
-template <class Value>
-RGB to_rgb(const Value& v) {
-  if constexpr (std::is_arithmetic_v<Value>)
-    return RGB(v);
-  else
-    return {v[0], v[1], v[2]};
-}
 
 /// Single voxels and leaves full of them on both sides of the origin (where four nodes of the
 /// highest level meet), a large cube of one value, and holes.
