@@ -29,9 +29,9 @@ class Bdpt final : public Estimator {
   void sample(SampleStream& light, SampleStream& eye, Workspace& w) const override {
     w.contributions.clear();
     Vec2 raster;
-    trace_eye_subpath(scene_, eye, max_vertices_, w.eye, raster);
+    w.refused += !trace_eye_subpath(scene_, eye, max_vertices_, w.eye, raster);
     // Of the last vertex only the emission is used.
-    trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
+    w.refused += !trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
     const int eye_size = static_cast<int>(w.eye.size());
     const int light_size = static_cast<int>(w.light.size());
     bool specular = true;  // all vertices between the first and this
@@ -68,7 +68,7 @@ class LightTracer final : public Estimator {
     w.contributions.clear();
     Vec2 raster;
     trace_eye_subpath(scene_, eye, 1, w.eye, raster);
-    trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
+    w.refused += !trace_light_subpath(scene_, light, max_vertices_ - 1, w.light);
     for (int s = 1; s <= static_cast<int>(w.light.size()); ++s) {
       if (settings_.hides(scene_, w.light[0].x, s + 1)) continue;
       const auto c = join(scene_, w.light, s, w.eye, 1);

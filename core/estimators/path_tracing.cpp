@@ -272,7 +272,10 @@ void PathTracer::sample(SampleStream& light, SampleStream& eye, Workspace& w) co
     const int k = flight.vertices + 1;  // vertices of the path that ends at the next one
     if (k > max_vertices_) return;
     if (k < max_vertices_ && may_scatter(flight)) add(direct_equiangular(flight, light), k + 1, 1);
-    if (!arrive(flight, eye, at)) return;
+    if (!arrive(flight, eye, at)) {
+      w.refused += !is_finite(at.throughput);
+      return;
+    }
     if (at.y.infinite()) {
       for (const int emitter : scene_.infinite_emitters()) {
         at.y.emitter = emitter;

@@ -110,6 +110,10 @@ class SeenLight final : public Estimator {
       const double density =
           sqr(relative_index(scene_, x, *w)) * std::abs(dot(x.point.shading.n, *w));
       RGB branch = throughput * f_hat(scene_, x, *w, from, true) * (D(scene_, x, *w) / density);
+      if (!is_finite(branch)) {
+        ++way.w.refused;
+        continue;
+      }
       const double survival = max_component(branch) / kSplitting;
       if (!(survival > 0)) continue;
       if (survival < 1) {

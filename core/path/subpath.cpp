@@ -44,8 +44,8 @@ bool go(const Scene& scene, const Vertex& x, const Vec3& w, const Vec2& u_distan
   return false;
 }
 
-/// Walks on from the last vertex, whose way here is path.back().edge.
-void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, Side side) {
+/// Walks on from the last vertex, whose way here is path.back().edge; as trace_light_subpath().
+bool walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, Side side) {
   const bool eye = side == Side::Eye;
   while (static_cast<int>(path.size()) < max_vertices) {
     SubpathVertex& x = path.back();
@@ -53,10 +53,10 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
     Step step;
     const auto sample =
         leave_vertex(scene, x.x, -x.edge.w, side, eye && path[before].x.degenerate, u, step);
-    if (!sample) return;
+    if (!sample) return true;
     const Scattering& s = sample->scattering;
     SubpathVertex next;
-    if (!arrive(scene, x, s.f_hat, step, next)) return;
+    if (!arrive(scene, x, s.f_hat, step, next)) return is_finite(next.throughput);
 
     x.x.degenerate = sample->degenerate;
     const double reverse = pdf_arrival(scene, x.x, path[before].x, reversed(x.edge),
@@ -65,8 +65,9 @@ void walk(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path, 
         other_techniques(scene, path, before, reverse, sample->degenerate, side);
     if (!eye && s.survival_to_light > 0) path[before].if_behind_specular = 1 / s.survival_to_light;
     path.push_back(next);
-    if (next.x.infinite()) return;
+    if (next.x.infinite()) return true;
   }
+  return true;
 }
 
 }  // namespace
@@ -163,22 +164,24 @@ double other_techniques(const Scene& scene, const Subpath& path, std::size_t i, 
   return ratio * (connects + factor * path[i - 1].other_techniques);
 }
 
-void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path) {
+bool trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path) {
   path.clear();
   SubpathVertex start;
-  if (max_vertices < 1 || !sample_emitter(scene, u, start)) return;
+  if (max_vertices < 1 || !sample_emitter(scene, u, start)) return true;
   path.push_back(start);
   const Vec2 u_direction = u.next2();
   const Vec2 u_distance = u.next2();
   Step step;
-  if (max_vertices < 2 || !leave_emitter(scene, start.x, u_direction, u_distance, step)) return;
+  if (max_vertices < 2 || !leave_emitter(scene, start.x, u_direction, u_distance, step))
+    return true;
   SubpathVertex next;
-  if (!arrive(scene, start, L_e(scene, start.x, step.edge.w), step, next)) return;
+  if (!arrive(scene, start, L_e(scene, start.x, step.edge.w), step, next))
+    return is_finite(next.throughput);
   path.push_back(next);
-  walk(scene, u, max_vertices, path, Side::Light);
+  return walk(scene, u, max_vertices, path, Side::Light);
 }
 
-void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path,
+bool trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path,
                        Vec2& raster) {
   path.clear();
   raster = u.next2();
@@ -190,14 +193,16 @@ void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Su
   start.throughput = RGB(1 / start.pdf);
   start.connects = true;
   path.push_back(start);
-  if (max_vertices < 2) return;
+  if (max_vertices < 2) return true;
   Step step;
   const bool seen = leave_sensor(scene, start.x, raster, u_distance, step);
   path.front().x = start.x;
+  if (!seen) return true;
   SubpathVertex next;
-  if (!seen || !arrive(scene, start, RGB(W_e(scene, start.x, step.edge.w)), step, next)) return;
+  if (!arrive(scene, start, RGB(W_e(scene, start.x, step.edge.w)), step, next))
+    return is_finite(next.throughput);
   path.push_back(next);
-  if (!next.x.infinite()) walk(scene, u, max_vertices, path, Side::Eye);
+  return next.x.infinite() || walk(scene, u, max_vertices, path, Side::Eye);
 }
 
 }  // namespace fogbow

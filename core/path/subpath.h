@@ -67,12 +67,12 @@ std::optional<DirectionSample> leave_vertex(const Scene& scene, const Vertex& x,
 Vertex sample_sensor(const Scene& scene, const Vec2& u);
 
 /// Traces vertices from the emitters until roulette, absorption, escape or `max_vertices` ends the
-/// walk.
-void trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path);
+/// walk. False where that was a throughput that is not finite, which is no absorption.
+bool trace_light_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path);
 
 /// The same from the sensor; `raster` is where the film was sampled. Ends also at infinite
 /// emitters, whose vertex is the last.
-void trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path,
+bool trace_eye_subpath(const Scene& scene, SampleStream& u, int max_vertices, Subpath& path,
                        Vec2& raster);
 
 /// Density of sampling x as the end of an edge that leaves `from` with density pdf_sigma.

@@ -11,10 +11,10 @@ namespace {
 std::optional<Rejection> trace(const Scene& scene, int s, int t, SampleStream& u, Subpath& light,
                                Subpath& eye) {
   Vec2 raster;
-  trace_eye_subpath(scene, u, t, eye, raster);
+  if (!trace_eye_subpath(scene, u, t, eye, raster)) return Rejection::NonFinite;
   if (static_cast<int>(eye.size()) < t) return Rejection::MissedScene;
   light.clear();
-  if (s > 0) trace_light_subpath(scene, u, s, light);
+  if (s > 0 && !trace_light_subpath(scene, u, s, light)) return Rejection::NonFinite;
   if (static_cast<int>(light.size()) < s) return Rejection::MissedScene;
   if (s > 0 && (!light[s - 1].connects || !eye[t - 1].connects || eye[t - 1].x.infinite()))
     return Rejection::WrongConfiguration;

@@ -12,7 +12,7 @@ namespace fogbow {
 namespace {
 
 TEST(Bootstrap, StartsAreInProportionToLightAndInOrder) {
-  constexpr int kSamples = 512, kStarts = 1 << 14;
+  constexpr int kSamples = 1100, kStarts = 1 << 15;  // more than a block of samples
   const Scene scene(testing::make_test_scene("glass-sphere-fog"));
   const auto bdpt = make_bdpt(scene, {.max_depth = 6, .seen_light = false});
   const Bootstrap bootstrap(*bdpt, testing::suite_seed(), kSamples);

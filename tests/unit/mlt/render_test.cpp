@@ -268,5 +268,34 @@ TEST(Render, CountsWhatIsNotFinite) {
   }
 }
 
+/// A mirror of which one half reflects no number, under a sky: beside what chains refused.
+TEST(SeenLightPicture, CountsWhatIsNotFinite) {
+  SceneDescription d = testing::make_test_scene("surfaces");
+  d.surfaces.clear();
+  Surface& wall = d.surfaces.emplace_back();
+  wall.shape = make_rectangle(Transform::scale(Vec3(9, 9, 1)));
+  wall.bsdf = make_conductor(RGB(0), RGB(1),
+                             std::shared_ptr<const Texture>(std::make_shared<HalfBroken>()));
+  d.emitters = {make_constant_emitter(RGB(1))};
+  const Scene scene(std::move(d));
+  for (const char* integrator : {"path", "bdpt"}) {
+    const RenderResult result = render(scene, options_of(integrator, 1));
+    EXPECT_GT(result.non_finite, result.samples / 3) << integrator;
+    EXPECT_GT(result.b, 0) << integrator;
+  }
+  RenderSettings settings;
+  settings.max_depth = 3;
+  SeenLightPicture seen(scene, settings, 1, 0.1);
+  seen.keep_up(1);
+  const auto [width, height] = rendered_size(scene.film());
+  RenderResult result;
+  result.image = Image(width, height, {"R", "G", "B", "Error.R", "Error.G", "Error.B"});
+  result.non_finite = 5;
+  seen.add_to(result);
+  EXPECT_GE(result.non_finite, 5u + static_cast<unsigned>(width * height / 2));
+  EXPECT_GT(result.b, 0);
+  for (const float value : result.image.pixels) ASSERT_TRUE(std::isfinite(value));
+}
+
 }  // namespace
 }  // namespace fogbow
