@@ -10,10 +10,10 @@ namespace fogbow {
 
 namespace {
 
-/// Standard error of a mean over it, from Σ x and Σ x².
-double relative_error(double sum, double squares, std::uint64_t n) {
-  if (!(sum > 0)) return 0;
-  return std::sqrt(std::max(squares / sqr(sum) - 1 / static_cast<double>(n), 0.0));
+/// Of the mean of independent numbers, from their Σ x and Σ x².
+double variance_of_mean(double sum, double squares, std::uint64_t samples) {
+  const auto n = static_cast<double>(samples);
+  return std::max(squares / n - sqr(sum / n), 0.0) / n;
 }
 
 }  // namespace
@@ -57,20 +57,22 @@ bool Normalization::over_bridge() const {
 double Normalization::standard_error() const {
   std::array<double, Film::kGroups> groups;
   for (int g = 0; g < Film::kGroups; ++g) groups[g] = b(g);
+  const double between = replicate_mean(groups).standard_error;
   const BridgeSums sums = all();
-  const double by_samples = over_bridge()
-                                ? relative_error(sums.sampled, sums.sampled_squares, sums.samples)
-                                : relative_error(sums.f_star, sums.squares, sums.samples);
-  return std::max(replicate_mean(groups).standard_error, by_samples * b());
+  const bool bridged = over_bridge();
+  const double sum = bridged ? sums.sampled : sums.f_star;
+  const double squares = bridged ? sums.sampled_squares : sums.squares;
+  if (!(sum > 0)) return between;
+  const double error = std::sqrt(variance_of_mean(sum, squares, sums.samples));
+  return std::max(between, error / (sum / static_cast<double>(sums.samples)) * b());
 }
 
 double Normalization::disagreement() const {
   const double mean = all().mean();
   double chi2 = 0;
   for (const BridgeSums& g : groups_) {
-    const auto n = static_cast<double>(g.samples);
-    const double variance = (g.squares / n - sqr(g.f_star / n)) / n;
-    if (variance > 0) chi2 += sqr(g.f_star / n - mean) / variance;
+    const double variance = variance_of_mean(g.f_star, g.squares, g.samples);
+    if (variance > 0) chi2 += sqr(g.mean() - mean) / variance;
   }
   return chi2;
 }

@@ -32,8 +32,7 @@ std::optional<Vec3> point_light_position(const Emitter& emitter) {
 
 /// Half by power, half alike: power alone starves the lamp that lights what the picture shows where
 /// a sky or a sun is by far the stronger, and no choice of ours is then off by more than twice.
-DiscreteDistribution choice_of_emitters(std::span<const double> powers) {
-  const double total = std::accumulate(powers.begin(), powers.end(), 0.0);
+DiscreteDistribution choice_of_emitters(std::span<const double> powers, double total) {
   if (total == 0) return DiscreteDistribution(std::vector<double>(powers.size(), 1.0));
   const auto lit = static_cast<double>(powers.size() - std::ranges::count(powers, 0.0));
   std::vector<double> weights;
@@ -252,7 +251,7 @@ void Scene::collect_emitters(const BoundaryReport& report) {
   power_ = std::accumulate(powers.begin(), powers.end(), 0.0);
   if (!std::isfinite(power_))
     throw Error(ErrorKind::Scene, "the power of all emitters together is not finite");
-  emitter_distribution_ = choice_of_emitters(powers);
+  emitter_distribution_ = choice_of_emitters(powers, power_);
 }
 
 /// A box that no boundary reaches into lies in one region.

@@ -232,6 +232,13 @@ TEST(Scene, ReportsPointLightsOfWhichBoundariesDisagree) {
             1);
 }
 
+bool may_glow_at(const Scene& scene, const Medium* medium, const Vec3& position) {
+  EmitterPoint x;
+  x.surface.position = position;
+  const int emitter = scene.emitter_of_medium(medium);
+  return scene.emitter(static_cast<std::size_t>(emitter)).pdf_position(x) > 0;
+}
+
 /// The surface of a pool ends at its walls: what glows in it may be anywhere in the scene.
 TEST(Scene, LetsAnOpenBoundaryGlowBelowIt) {
   const auto glow = fog("glow", 1);
@@ -245,12 +252,7 @@ TEST(Scene, LetsAnOpenBoundaryGlowBelowIt) {
         wall(make_rectangle(Transform::rotate({0, 1, 0}, 90 * i) *
                             Transform::translate({0, -0.5, -1}) * Transform::scale(Vec3(1)))));
   d.surfaces.push_back(wall(level(-1, 1)));
-  const Scene scene(std::move(d));
-  const Emitter& emitter =
-      scene.emitter(static_cast<std::size_t>(scene.emitter_of_medium(glow.get())));
-  EmitterPoint x;
-  x.surface.position = {0.2, -0.5, 0.3};
-  EXPECT_GT(emitter.pdf_position(x), 0);
+  EXPECT_TRUE(may_glow_at(Scene(std::move(d)), glow.get(), {0.2, -0.5, 0.3}));
 }
 
 /// All of a room glows but for a bubble around the eye.
@@ -258,11 +260,7 @@ TEST(Scene, LetsWhatIsOutsideOfABoundaryGlow) {
   const auto glow = fog("glow", 1);
   const Scene scene(seen_from(
       Vec3(0), {boundary(make_sphere(Vec3(0), 0.5), nullptr, glow, "bubble"), wall(cube(2))}));
-  const Emitter& emitter =
-      scene.emitter(static_cast<std::size_t>(scene.emitter_of_medium(glow.get())));
-  EmitterPoint x;
-  x.surface.position = {1.2, -1.5, 1.3};
-  EXPECT_GT(emitter.pdf_position(x), 0);
+  EXPECT_TRUE(may_glow_at(scene, glow.get(), {1.2, -1.5, 1.3}));
 }
 
 /// Beyond the wall of a pool lies what boundaries in sight say, not the pool that is nearer.

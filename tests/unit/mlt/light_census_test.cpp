@@ -43,19 +43,20 @@ testing::Estimate mean_of(const Estimator& estimator, const Counts& counts) {
 }
 
 /// Light tracing tells caustics by what its subpath met first.
+auto caustic(bool in_medium) {
+  return [in_medium](const Workspace& w, const Contribution& c) {
+    std::size_t i = 1;
+    while (i < static_cast<std::size_t>(c.s) && w.light[i].x.degenerate) ++i;
+    return i > 1 && i < static_cast<std::size_t>(c.s) && w.light[i].x.in_medium() == in_medium;
+  };
+}
+
 TEST(LightCensus, FindsWhatOtherEstimatorsFind) {
   for (const char* name : {"surfaces", "glass-sphere-fog", "water", "two-kinds-of-glass"}) {
     SCOPED_TRACE(name);
     const Scene scene(make_test_scene(name));
     const LightCensus census = take_light_census(scene, kSettings, kSamples, 1);
     const auto light = make_light_tracer(scene, kSettings);
-    const auto caustic = [](bool in_medium) {
-      return [in_medium](const Workspace& w, const Contribution& c) {
-        std::size_t i = 1;
-        while (i < static_cast<std::size_t>(c.s) && w.light[i].x.degenerate) ++i;
-        return i > 1 && i < static_cast<std::size_t>(c.s) && w.light[i].x.in_medium() == in_medium;
-      };
-    };
     testing::Estimate seen_by_lens = mean_of(*light, caustic(false));
     const testing::Estimate in_media = mean_of(*light, caustic(true));
     seen_by_lens.mean += in_media.mean;
@@ -161,13 +162,6 @@ TEST(LightCensus, TellsFogFromFloorWhereNothingIsSeenThrough) {
   EXPECT_EQ(census.caustic_seen_through.mean, 0);
   EXPECT_GT(census.volume_caustic.mean, 0.1 * census.surface_caustic.mean);
   const auto light = make_light_tracer(scene, kSettings);
-  const auto caustic = [](bool in_medium) {
-    return [in_medium](const Workspace& w, const Contribution& c) {
-      std::size_t i = 1;
-      while (i < static_cast<std::size_t>(c.s) && w.light[i].x.degenerate) ++i;
-      return i > 1 && i < static_cast<std::size_t>(c.s) && w.light[i].x.in_medium() == in_medium;
-    };
-  };
   expect_same(census.surface_caustic, mean_of(*light, caustic(false)));
   expect_same(census.volume_caustic, mean_of(*light, caustic(true)));
   expect_same(census.in_media, mean_of(*light, [](const Workspace& w, const Contribution& c) {

@@ -70,8 +70,10 @@ TEST(Normalization, PoolsGroupsAndTellsTheirSpread) {
   }
   EXPECT_EQ(n.b(), all.b());
   EXPECT_EQ(n.samples(), std::uint64_t{Film::kGroups} * kSamples);
-  EXPECT_GE(n.standard_error(), replicate_mean(groups).standard_error);
-  EXPECT_LT(n.standard_error(), 3 * replicate_mean(groups).standard_error);
+  const double of_samples =
+      std::sqrt(all.sampled_squares / sqr(all.sampled) - 1 / static_cast<double>(all.samples));
+  EXPECT_NEAR(n.standard_error(),
+              std::max(replicate_mean(groups).standard_error, of_samples * all.b()), 1e-12 * kB);
 }
 
 /// Groups alone miss by more than three of their standard errors in 3% of all runs.

@@ -72,38 +72,32 @@ TEST(Pilot, LearnsThePictureAndNotItsFireflies) {
   EXPECT_GT(pilot.f_star, 0);
 }
 
-/// As bright everywhere, to the rim.
-class EvenPicture final : public Estimator {
+/// Of two halves, each as bright everywhere, to the rim.
+class HalvedPicture final : public Estimator {
  public:
-  const char* name() const override { return "even picture"; }
+  HalvedPicture(double left, double right) : left_(left), right_(right) {}
+  const char* name() const override { return "halved picture"; }
   void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
-    const double x = eye.next(), y = eye.next();
+    const Vec2 raster = eye.next2();
     w.contributions.clear();
-    w.add({{x, y}, RGB(2), 3, 1, 2});
+    w.add({raster, RGB(raster.x < 0.5 ? left_ : right_), 3, 1, 2});
   }
+
+ private:
+  double left_, right_;
 };
+const HalvedPicture kEven(2, 2);
 
 TEST(Pilot, SeesNoRimInAnEvenPicture) {
-  const Pilot pilot = run_pilot(EvenPicture(), 1, 7, 1 << 18);
+  const Pilot pilot = run_pilot(kEven, 1, 7, 1 << 18);
   const double middle = pilot.importance(Vec2(0.5));
   for (const Vec2 raster : {Vec2(0, 0), Vec2(1, 1), Vec2(0, 0.5), Vec2(0.5, 1)})
     EXPECT_NEAR(pilot.importance(raster) / middle, 1, 0.05);
 }
 
-/// Its left half is three times as bright as its right.
-class HalvedPicture final : public Estimator {
- public:
-  const char* name() const override { return "halved picture"; }
-  void sample(SampleStream&, SampleStream& eye, Workspace& w) const override {
-    const double x = eye.next(), y = eye.next();
-    w.contributions.clear();
-    w.add({{x, y}, RGB(x < 0.5 ? 3 : 1), 3, 1, 2});
-  }
-};
-
 /// f* of a sample is its luminance times the importance of its place.
 TEST(Pilot, KnowsTheMeanOfTheWeightedPicture) {
-  const Pilot pilot = run_pilot(HalvedPicture(), 1, 7, 1 << 16);
+  const Pilot pilot = run_pilot(HalvedPicture(3, 1), 1, 7, 1 << 16);
   double expected = 0;
   constexpr int n = 256;
   for (int i = 0; i < n * n; ++i) {
@@ -123,7 +117,7 @@ TEST(Pilot, HasAsManyCellsAcrossAsThePictureIsWide) {
     return n;
   };
   for (const auto& [aspect, across, down] : {std::tuple(4.0, 64, 16), {0.5, 32, 64}}) {
-    const PictureImportance w = run_pilot(EvenPicture(), aspect, 7, 1 << 14).importance;
+    const PictureImportance w = run_pilot(kEven, aspect, 7, 1 << 14).importance;
     EXPECT_EQ(steps(w, {1, 0}), across);
     EXPECT_EQ(steps(w, {0, 1}), down);
   }
@@ -133,7 +127,7 @@ TEST(Pilot, HasAsManyCellsAcrossAsThePictureIsWide) {
 TEST(Pilot, GoesOnUntilItKnowsEnough) {
   const auto samples = [](double least_effective) {
     double sum = 0;
-    for (const auto& row : run_pilot(EvenPicture(), 1, 7, 1, least_effective).techniques)
+    for (const auto& row : run_pilot(kEven, 1, 7, 1, least_effective).techniques)
       for (const double value : row) sum += value / 2;
     return sum;
   };

@@ -243,16 +243,22 @@ class HalfBroken final : public Texture {
   RGB mean() const override { return RGB(0.5); }
 };
 
-/// A wall fills the picture, and one half of it scatters what is not finite: with a path tracer, of
-/// a point light's direct light exactly one half is refused. The rest is as it should be.
-TEST(Render, CountsWhatIsNotFinite) {
+/// A wall fills the picture.
+SceneDescription wall_under(std::shared_ptr<const Bsdf> bsdf, std::shared_ptr<Emitter> emitter) {
   SceneDescription d = testing::make_test_scene("surfaces");
   d.surfaces.clear();
   Surface& wall = d.surfaces.emplace_back();
   wall.shape = make_rectangle(Transform::scale(Vec3(9, 9, 1)));
-  wall.bsdf = make_diffuse(std::shared_ptr<const Texture>(std::make_shared<HalfBroken>()));
-  d.emitters = {make_point_emitter(Vec3(0, 0.3, 2.5), RGB(4))};
-  const Scene scene(std::move(d));
+  wall.bsdf = std::move(bsdf);
+  d.emitters = {std::move(emitter)};
+  return d;
+}
+
+/// A wall fills the picture, and one half of it scatters what is not finite: with a path tracer, of
+/// a point light's direct light exactly one half is refused. The rest is as it should be.
+TEST(Render, CountsWhatIsNotFinite) {
+  const std::shared_ptr<const Texture> half = std::make_shared<HalfBroken>();
+  const Scene scene(wall_under(make_diffuse(half), make_point_emitter(Vec3(0, 0.3, 2.5), RGB(4))));
   for (const char* integrator : {"path", "light", "bdpt", "pssmlt", "mlt"}) {
     SCOPED_TRACE(integrator);
     RenderOptions options = options_of(integrator, 1);
@@ -270,14 +276,9 @@ TEST(Render, CountsWhatIsNotFinite) {
 
 /// A mirror of which one half reflects no number, under a sky: beside what chains refused.
 TEST(SeenLightPicture, CountsWhatIsNotFinite) {
-  SceneDescription d = testing::make_test_scene("surfaces");
-  d.surfaces.clear();
-  Surface& wall = d.surfaces.emplace_back();
-  wall.shape = make_rectangle(Transform::scale(Vec3(9, 9, 1)));
-  wall.bsdf = make_conductor(RGB(0), RGB(1),
-                             std::shared_ptr<const Texture>(std::make_shared<HalfBroken>()));
-  d.emitters = {make_constant_emitter(RGB(1))};
-  const Scene scene(std::move(d));
+  const std::shared_ptr<const Texture> half = std::make_shared<HalfBroken>();
+  const Scene scene(
+      wall_under(make_conductor(RGB(0), RGB(1), half), make_constant_emitter(RGB(1))));
   for (const char* integrator : {"path", "bdpt"}) {
     const RenderResult result = render(scene, options_of(integrator, 1));
     EXPECT_GT(result.non_finite, result.samples / 3) << integrator;
